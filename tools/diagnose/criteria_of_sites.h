@@ -135,4 +135,13 @@ constexpr double least_own_response = 0.02;
 /// machines that oppose each other, as Stribeck's and a damping, reach half of it.
 constexpr double most_cancelling = 3;
 
+// Dry friction, integrated through its front.
+
+/// [widths] Beyond it the hyperbolic tangent is constant within a thousandth.
+constexpr double reach_of_front = 4;
+/// [widths] Parts in which a step goes through it.
+constexpr double part_of_front = 2;
+/// [steps of a sample] A front needs six; one that holds a state needs any number.
+constexpr int most_parts_of_fronts = 16;
+
 }  // namespace loopwright::diagnosis::criteria

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include "tools/experiment/signal_figures.h"
@@ -46,6 +47,13 @@ void add_stale(std::span<const double> value, std::vector<size_t>& rows) {
   }
 }
 
+/// Ascending.
+std::vector<size_t> each_once(std::vector<size_t> rows) {
+  std::ranges::sort(rows);
+  rows.erase(std::ranges::unique(rows).begin(), rows.end());
+  return rows;
+}
+
 }  // namespace
 
 std::vector<size_t> leaps_out_and_back(std::span<const double> value, double factor) {
@@ -81,9 +89,16 @@ std::vector<size_t> single_zeros(std::span<const double> value) {
 std::vector<size_t> false_readings(std::span<const double> value) {
   std::vector<size_t> rows = leaps_out_and_back(value);
   add_stale(value, rows);
-  std::ranges::sort(rows);
-  rows.erase(std::ranges::unique(rows).begin(), rows.end());
-  return rows;
+  return each_once(std::move(rows));
+}
+
+std::vector<size_t> unfelt_rows(std::span<const double> input, InputLeaps leaps) {
+  constexpr double near = 5;  // [usual second difference] whether they are felt, the record decides
+  if (leaps == InputLeaps::felt) return {};
+  if (leaps == InputLeaps::far_unfelt) return leaps_out_and_back(input);
+  std::vector<size_t> rows = leaps_out_and_back(input, near);
+  std::ranges::copy(single_zeros(input), std::back_inserter(rows));
+  return each_once(std::move(rows));
 }
 
 void replace_readings(std::span<const double> at, std::span<double> value, std::span<const size_t> rows) {

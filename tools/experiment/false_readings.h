@@ -18,6 +18,12 @@ std::vector<size_t> leaps_out_and_back(std::span<const double> value, double fac
 /// Single rows of zero among others of one sign beyond the noise: a device that was not ready. Ascending.
 std::vector<size_t> single_zeros(std::span<const double> value);
 
+/// Which single values of a recorded input the machine does not feel: none; those far out of line; or also
+/// those nearer, and zeros.
+enum class InputLeaps { felt, far_unfelt, unfelt };
+/// Rows of the values that are not felt. Ascending.
+std::vector<size_t> unfelt_rows(std::span<const double> input, InputLeaps leaps);
+
 /// The readings of these rows become those of the cubic through the two nearest other rows on either side.
 /// `at`: where the rows lie, in any unit. Rows without two on either side keep theirs.
 void replace_readings(std::span<const double> at, std::span<double> value, std::span<const size_t> rows);

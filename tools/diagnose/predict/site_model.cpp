@@ -5,6 +5,7 @@
 #include <cstring>
 #include <utility>
 #include "engine/run/run.h"
+#include "tools/diagnose/criteria.h"
 
 namespace loopwright::diagnosis {
 
@@ -152,7 +153,6 @@ double SiteModel::step(Run<double>& run, double t, double most, bool ends_at_fro
 
 bool SiteModel::flow(size_t row, const double* from, double* to, double* middle) {
   constexpr double nothing_left = 1e-9;
-  constexpr int most_parts = 16;  // in a sample; a front needs six, one that holds a state any number
   Run<double>& run = *driven_at(row).run;
   const size_t n = size_t(plan_->states);
   const double begin = record_.time[row], h = record_.step(row) / substeps_;
@@ -167,7 +167,7 @@ bool SiteModel::flow(size_t row, const double* from, double* to, double* middle)
       run.reuse_signals();
     }
     for (double done = 0; h - done > nothing_left * h;) {
-      const double length = this->step(run, t + done, h - done, parts < most_parts, to);
+      const double length = this->step(run, t + done, h - done, parts < criteria::most_parts_of_fronts, to);
       if (length == 0) {
         run.restored(run.now());
         return false;

@@ -219,17 +219,6 @@ std::vector<double> mean_over_rows(const std::vector<double>& values, double row
   return means;
 }
 
-std::vector<size_t> unfelt_rows(std::span<const double> input, InputLeaps leaps) {
-  constexpr double near = 5;  // [usual second difference] the records decide whether they are felt
-  if (leaps == InputLeaps::felt) return {};
-  if (leaps == InputLeaps::far_unfelt) return leaps_out_and_back(input);
-  std::vector<size_t> rows = leaps_out_and_back(input, near);
-  std::ranges::copy(single_zeros(input), std::back_inserter(rows));
-  std::ranges::sort(rows);
-  rows.erase(std::ranges::unique(rows).begin(), rows.end());
-  return rows;
-}
-
 void take_away(AxisRecord& record, const InputNoise& noise) {
   if (noise.rows == 0) return;
   for (std::vector<double>* values : {&record.input, &record.input_slope}) {

@@ -7,13 +7,9 @@
 #include <vector>
 #include "engine/plan/plan.h"
 #include "tools/compare/machine.h"
+#include "tools/experiment/false_readings.h"
 
 namespace loopwright::diagnosis {
-
-/// Which single values of a recorded input the machine does not feel: none; those far out of line; or also
-/// those nearer, and zeros.
-enum class InputLeaps { felt, far_unfelt, unfelt };
-std::vector<size_t> unfelt_rows(std::span<const double> input, InputLeaps leaps);
 
 /// A measured port.
 struct MeasuredPort {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include "models/real/whole.h"
+#include "tools/diagnose/criteria.h"
 #include "tools/diagnose/record/dead_sensor.h"
 #include "tools/diagnose/record/shorten.h"
 #include "tools/experiment/false_readings.h"
@@ -25,6 +26,16 @@ double median_step(const std::vector<double>& time) {
 }
 
 }  // namespace
+
+std::vector<bool> SignalRecord::settling_rows() const {
+  std::vector<bool> settles(rows());
+  for (size_t from = 0, to = 0; from < rows(); from = to) {
+    do ++to;
+    while (to < rows() && !begins_at(to));
+    std::fill_n(settles.begin() + std::ptrdiff_t(from), (to - from) / criteria::settling_part, true);
+  }
+  return settles;
+}
 
 SignalRecord read_signal_record(const Experiment& experiment, Problems& problems) {
   SignalRecord record;

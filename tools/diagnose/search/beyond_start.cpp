@@ -1,19 +1,16 @@
 #include "tools/diagnose/search/beyond_start.h"
 #include <cmath>
 #include <limits>
-#include "tools/diagnose/criteria.h"
 
 namespace loopwright::diagnosis {
 
 double objective_beyond_start(SiteFitter& fitter, SiteHypothesis hypothesis) {
   SitePass pass;
   if (!fitter.pass(hypothesis, false, pass)) return std::numeric_limits<double>::infinity();
-  const SignalRecord& record = fitter.model().record();
+  const std::vector<bool> settles = fitter.model().record().settling_rows();
   double sum = 0;
-  size_t begin = 0;
   for (size_t k = 0; k < pass.rows; ++k) {
-    if (record.begins_at(k)) begin = k;
-    if (k - begin < pass.rows / criteria::settling_part) continue;
+    if (settles[k]) continue;
     for (size_t i = k * pass.outputs; i < (k + 1) * pass.outputs; ++i)
       if (!std::isnan(pass.error[i]))
         sum += std::log(pass.variance[i]) + squared(pass.error[i]) / pass.variance[i];

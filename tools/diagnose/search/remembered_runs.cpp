@@ -40,8 +40,8 @@ Results RememberedRuns::run(Trials& trials, const std::vector<Member>& members, 
   const auto known = std::ranges::find(runs_, question, &Run::question);
   if (known != runs_.end()) return used(runs_, known).results;
   for (const Trial& trial : trials.list)
-    trials.work->add(trial.rows(),
-                     double(size_t(trial.model->steps_a_sample()) + members.size()) * Work::of_a_sample);
+    trials.work->add(trial.rows(), double(1 + members.size()) * Work::of_a_sample +
+                                       double(trial.model->steps_a_sample() - 1) * Work::of_a_step);
   runs_.push_back({std::move(question), anew()});
   for (const Fitted& fitted : *runs_.back().results)
     if (fitted.flying) trials.work->add(fitted.prediction.path.samples(), Work::of_a_flight);

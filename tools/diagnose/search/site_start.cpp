@@ -4,7 +4,7 @@
 namespace loopwright::diagnosis {
 namespace {
 
-constexpr int most_first_substeps = 512;  // of a diode that conducts
+constexpr int most_first_substeps = 64;
 
 /// Sizes of states and sites. False if the model diverges with the shortest steps.
 bool learn_sizes(SiteFitter& fitter, SiteHypothesis& h) {

@@ -43,17 +43,6 @@ bool are_errors_of_counts(const SiteErrors& errors, const RecordedOutput& output
          errors.simulated[j] < most;
 }
 
-/// Rows in which the filter still learns where a record, or its part that is held out, begins.
-std::vector<bool> settling_rows(const SignalRecord& record) {
-  std::vector<bool> settles(record.rows());
-  for (size_t from = 0, to = 0; from < record.rows(); from = to) {
-    do ++to;
-    while (to < record.rows() && !record.begins_at(to));
-    std::fill_n(settles.begin() + std::ptrdiff_t(from), (to - from) / criteria::settling_part, true);
-  }
-  return settles;
-}
-
 }  // namespace
 
 SiteErrors errors_of(SiteFitter& fitter, SiteHypothesis h) {
@@ -63,6 +52,7 @@ SiteErrors errors_of(SiteFitter& fitter, SiteHypothesis h) {
   if (errors.diverges) return errors;
   const SignalRecord& record = fitter.model().record();
   const size_t fitted = record.held_out_from, rows = record.rows();
+  const std::vector<bool> settles = record.settling_rows();
   MeanSquare all, all_held_out;
   std::vector<double> portmanteaus;
   for (size_t j = 0; j < pass.outputs; ++j) {
@@ -72,7 +62,7 @@ SiteErrors errors_of(SiteFitter& fitter, SiteHypothesis h) {
       const double square = pass.error[at] * pass.error[at];
       (k < fitted ? predicted : held_out).add(square);
       (k < fitted ? all : all_held_out).add(square / pass.variance[at]);
-      if (!std::isnan(square) && k > rows / criteria::settling_part) noise.add(pass.variance[at]);  // settled
+      if (!std::isnan(square) && !settles[k]) noise.add(pass.variance[at]);
     }
     errors.predicted.push_back(predicted.root()), errors.held_out.push_back(held_out.root());
     errors.noise.push_back(noise.root());
@@ -89,7 +79,6 @@ SiteErrors errors_of(SiteFitter& fitter, SiteHypothesis h) {
                length = (rows - first) / criteria::simulations_of_any_diagram + 1;
   std::vector<MeanSquare> simulated(pass.outputs), expected(pass.outputs);
   std::vector<double> e, variance((rows - first) * pass.outputs);
-  const std::vector<bool> settles = settling_rows(record);
   fitter.filter().expect_of_simulations(pass, settles, first, length, variance);
   for (size_t from = first; from < rows; from += length) {
     const size_t to = std::min(rows, from + length);

@@ -214,10 +214,13 @@ class Telling {
     return missed_output(errors_, found_.noise, criteria::far_simulation);
   }
   size_t changes() const { return result_.effects.size() + result_.moved_parameters.size(); }
+  void doubt_changes(std::string what) {
+    result_.findings.push_back(
+        {std::move(what), "they may stand for one effect that nothing here names", true, false});
+  }
   bool are_too_many_changes() {
     if (changes() < criteria::too_many_changes) return false;
-    result_.findings.push_back({fmt::format("{} changes at once", changes()),
-                                "they may stand for one effect that nothing here names", true, false});
+    doubt_changes(fmt::format("{} changes at once", changes()));
     return true;
   }
   /// Many changes at once, with which a simulation still misses the record by far, follow it without its
@@ -226,11 +229,10 @@ class Telling {
     const std::optional<size_t> missed = missed_by_far();
     if (changes() < criteria::many_changes || !missed) return false;
     const double ratio = errors_.simulated[*missed] / found_.noise.measurement[*missed];
-    result_.findings.push_back(
-        {fmt::format(
-             "with {} changes at once a simulation still misses {} by {:.0f} times the noise of its sensor",
-             changes(), model_.record().outputs[*missed].port, ratio),
-         "they may stand for one effect that nothing here names", true, false});
+    doubt_changes(
+        fmt::format("with {} changes at once a simulation still misses {} by {:.0f} times the noise of its "
+                    "sensor",
+                    changes(), model_.record().outputs[*missed].port, ratio));
     return true;
   }
 
