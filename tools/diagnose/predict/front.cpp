@@ -23,7 +23,8 @@ double first_zero(double a, double b, double c) {
 }  // namespace
 
 double Front::longest_step() const {
-  const double through = first_zero(criteria::part_of_front * width_, -std::abs(slope_), -std::abs(curvature_));
+  const double through =
+      first_zero(criteria::part_of_front * width_, -std::abs(slope_), -std::abs(curvature_));
   const double outside = std::abs(begin_) - criteria::reach_of_front * width_;
   if (outside <= 0) return through;
   const double side = begin_ < 0 ? -1 : 1;
