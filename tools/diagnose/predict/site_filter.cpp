@@ -25,7 +25,11 @@ double SitePass::scaled_objective() const {
 SiteFilter::SiteFilter(SiteModel& model)
     : model_(model), record_(model.record()), model_states_(size_t(model.states())) {
   y_.resize(record_.outputs.size()), y_moved_.resize(record_.outputs.size());
-  site_scale_.assign(model.sites().size(), 1.0);
+  guess_scales(1);
+}
+
+void SiteFilter::guess_scales(double site) {
+  site_scale_.assign(model_.sites().size(), site);
   state_scale_.assign(model_states_, 1.0);
   const std::vector<double> initial = initial_states(0);
   for (size_t i = 0; i < initial.size(); ++i)
@@ -34,7 +38,7 @@ SiteFilter::SiteFilter(SiteModel& model)
     double largest = 0;
     for (double y : record_.outputs[j].value)
       if (std::isfinite(y)) largest = std::max(largest, std::abs(y));
-    if (const int state = model.measured_state(j); state >= 0 && largest > 0)
+    if (const int state = model_.measured_state(j); state >= 0 && largest > 0)
       state_scale_[size_t(state)] = largest;
   }
 }

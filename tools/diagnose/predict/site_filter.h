@@ -77,6 +77,8 @@ class SiteFilter {
   SiteNoise noise_of_simulation() const;
   /// With a slow disturbance at one of its sites, for a fit to begin with.
   SiteNoise with_disturbance(SiteNoise noise, int site) const;
+  /// Sizes of states from the record and its initial values, and one for all sites, before any pass.
+  void guess_scales(double site);
   /// Sizes of states and sites from a pass; differences are taken in proportion to them.
   void learn_scales(const SitePass& pass);
 

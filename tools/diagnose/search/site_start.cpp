@@ -6,8 +6,8 @@ namespace {
 
 constexpr int most_first_substeps = 64;
 
-/// Sizes of states and sites. False if the model diverges with the shortest steps.
-bool learn_sizes(SiteFitter& fitter, SiteHypothesis& h) {
+/// Sizes of states and sites, from those before. False if the model diverges with the shortest steps.
+bool learn_sizes_further(SiteFitter& fitter, SiteHypothesis& h) {
   constexpr int rounds = 3;  // the sizes of the first pass are guesses
   SitePass pass;
   for (int round = 0; round < rounds; ++round) {
@@ -20,6 +20,19 @@ bool learn_sizes(SiteFitter& fitter, SiteHypothesis& h) {
     fitter.filter().choose_substeps(pass);
   }
   return true;
+}
+
+/// The same with smaller guesses for the sites, where the first leads to states for which the model was not
+/// made: an ampere that drives a diode to e⁶⁰ tells nothing of its response.
+bool learn_sizes(SiteFitter& fitter, SiteHypothesis& h) {
+  constexpr double guesses[] = {1e-2, 1e-4, 1e-6};  // SI
+  const int substeps = fitter.model().substeps();
+  if (learn_sizes_further(fitter, h)) return true;
+  for (const double guess : guesses) {
+    fitter.filter().guess_scales(guess), fitter.model().set_substeps(substeps);
+    if (learn_sizes_further(fitter, h)) return true;
+  }
+  return false;
 }
 
 }  // namespace
