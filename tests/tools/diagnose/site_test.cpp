@@ -240,6 +240,13 @@ TEST(SiteFilter, SimulationsOfSeveralRecordsBeginWhereTheFilterHasSettled) {
   EXPECT_LT(errors.simulated[0], 2 * errors.expected_simulated[0]);
   EXPECT_GT(errors.simulated[0], 0.5 * errors.expected_simulated[0]);
 }
+TEST(SiteModel, ANumberOfABlockHasTheUnitOfItsType) {
+  const RecordedPlant files(heated_plate(nothing, 1));
+  const SiteModel model(files.diagram(), {files.experiment()}, {});
+  const auto capacity = std::ranges::find(model.parameters(), "plate.capacity", &ModelParameter::name);
+  ASSERT_NE(capacity, model.parameters().end());
+  EXPECT_EQ(capacity->unit, "J/K");
+}
 TEST(SiteModel, ASettingOfTheDiagramChangesAllBlocksThatReadIt) {
   const RecordedPlant files(motor({}, 6));
   const SiteModel model(files.diagram(), {files.experiment()}, {});

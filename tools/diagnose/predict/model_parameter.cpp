@@ -12,6 +12,9 @@ constexpr double change = 1e-3;  // relative, of a parameter whose readers are l
 struct Tunable {
   std::string path, unit;
   double value;
+
+  /// Empty if it follows from what is wired: "$y/$u".
+  std::string own_unit() const { return unit.find('$') == unit.npos ? unit : ""; }
 };
 
 /// The number at a path, or those of the objects in the list there, such as the constants of an Expression.
@@ -109,7 +112,8 @@ std::vector<ModelParameter> find_parameters(const std::string& diagram, const Lo
   }
   for (size_t i = 0; i < own.size(); ++i)
     if (!is_determined[i])
-      list.push_back({own[i].path, "", own[i].value, {{run.parameter(own[i].path), own[i].value, 1.0}}});
+      list.push_back(
+          {own[i].path, own[i].own_unit(), own[i].value, {{run.parameter(own[i].path), own[i].value, 1.0}}});
   return list;
 }
 
