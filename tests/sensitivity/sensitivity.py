@@ -20,7 +20,6 @@ WITH_ROLES = (901021, 901022, 901024, 901027, 901028, 901033, 901035, 901039, 90
 WITHOUT_ROLES = (120000, 120003, 120007, 120012, 120019, 120017, 120022, 120024, 120025, 120029)
 FACTORS = (0.5, 1.5)
 NONE = ("judged_row_s", 1.0)  # no threshold is changed
-SECTION = "Any diagram."  # of the thresholds that records with roles do not meet
 
 
 class Benchmark:
@@ -40,11 +39,10 @@ class Benchmark:
         return self.outcome.classify(result), self.outcome.said(result)
 
 
-def thresholds(text, without_roles=False):
-    """Names and values that such records meet, in the order of the file."""
-    before, _, rest = text.partition(f"// {SECTION}\n")
-    section, _, after = rest.partition("\n// ")
-    return [(name, value) for _, name, _, value in variable_criteria.thresholds(section if without_roles else before + after)]
+def thresholds(criteria, without_roles=False):
+    """Names and values that such records meet, in the order of their file."""
+    file = criteria.with_name("criteria_of_sites.h") if without_roles else criteria
+    return [(name, value) for _, name, _, value in variable_criteria.thresholds(file.read_text())]
 
 
 def answers(benchmark, program, name, factor, folders):
@@ -102,7 +100,7 @@ def main():
         if not (folder / "truth.json").exists():
             folder.mkdir(parents=True, exist_ok=True)
             benchmark.generate(seed, folder)
-    varied = thresholds(variable_criteria.criteria(HERE.parents[1] / "tools/diagnose/criteria.h"), options.without_roles)
+    varied = thresholds(HERE.parents[1] / "tools/diagnose/criteria.h", options.without_roles)
     if options.thresholds:
         unknown = set(options.thresholds) - {name for name, _ in varied}
         if unknown:

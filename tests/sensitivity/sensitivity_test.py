@@ -8,7 +8,8 @@ import unittest
 import sensitivity
 import variable_criteria
 
-CRITERIA = variable_criteria.criteria(pathlib.Path(sys.argv[1]))
+FILE = pathlib.Path(sys.argv[1])
+CRITERIA = variable_criteria.criteria(FILE)
 
 
 class Variables(unittest.TestCase):
@@ -29,14 +30,14 @@ class Variables(unittest.TestCase):
             self.assertIn(line, text)
 
     def test_those_of_diagrams_without_roles_are_left_out(self):
-        names = [name for name, _ in sensitivity.thresholds(CRITERIA)]
+        names = [name for name, _ in sensitivity.thresholds(FILE)]
         self.assertIn("judged_row_s", names)
         self.assertIn("speed_span_s", names)
         self.assertNotIn("alike_responses", names)
 
     def test_those_of_diagrams_without_roles_are_the_others(self):
         all_names = {name for _, name, _, _ in variable_criteria.thresholds(CRITERIA)}
-        with_roles, without = ({n for n, _ in sensitivity.thresholds(CRITERIA, w)} for w in (False, True))
+        with_roles, without = ({n for n, _ in sensitivity.thresholds(FILE, w)} for w in (False, True))
         self.assertEqual(with_roles | without, all_names)
         self.assertFalse(with_roles & without)
 
