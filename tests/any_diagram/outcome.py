@@ -104,7 +104,8 @@ def within_catalogue(results):
 def simulation_ratio(result):
     if result["answer"] is None or not result["answer"]["steps"]:
         return None
-    return result["answer"]["steps"][-1]["simulation_rmse"] / result["truth"]["simulation"][0]
+    port = result["truth"]["outputs"].index(result["answer"]["error"]["port"])
+    return result["answer"]["steps"][-1]["simulation_rmse"] / result["truth"]["simulation"][port]
 
 
 def share(results, *classes):

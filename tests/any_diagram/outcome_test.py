@@ -11,10 +11,12 @@ BUMP = {**OVERFLOW, "law": "bump", "shapes": []}
 
 def result(effects, parameters, found, moved=(), verdict="explained", kind="one", others=(), alternatives=()):
     return {"truth": {"seed": 1, "plant": "tanks", "class": kind, "effects": copy.deepcopy(effects),
-                      "parameters": [{"name": n, "stated": 1, "true": 1.2, "gain": 500, "counts": True} for n in parameters], "simulation": [0.1]},
+                      "parameters": [{"name": n, "stated": 1, "true": 1.2, "gain": 500, "counts": True} for n in parameters],
+                      "outputs": ["level1.y", "level2.y"], "simulation": [0.2, 0.1]},
             "answer": {"verdict": verdict, "effects": [{"site": s, "effect": e, "variables": v, "alternatives": list(alternatives)}
                                                        for s, e, v in found],
-                       "moved_parameters": {n: {} for n in moved}, "other_explanations": list(others), "steps": [{"simulation_rmse": 0.11}]},
+                       "moved_parameters": {n: {} for n in moved}, "other_explanations": list(others), "steps": [{"simulation_rmse": 0.11}],
+                       "error": {"port": "level2.y"}},
             "exit": 0, "over_limit": False, "time_s": 2.0, "text": ""}
 
 

@@ -73,8 +73,7 @@ Diagnosis diagnose_any_diagram(const std::string& diagram, const std::vector<std
   Diagnosis result;
   result.has_roles = false;
   result.diagram = diagram, result.experiments = experiments, result.title = model.plan().title;
-  result.force_unit = result.measured_unit = model.record().outputs.front().unit;
-  result.measured_port = model.record().outputs.front().port;
+  show_output(model.record().outputs.front(), result);
   result.rows = model.record().held_out_from;
   if (model.record().shortened) result.findings.push_back(*model.record().shortened);
   if (const size_t count = model.record().false_readings; count > 0)
@@ -89,9 +88,10 @@ Diagnosis diagnose_any_diagram(const std::string& diagram, const std::vector<std
   if (!found) {
     result.verdict = Verdict::unexplained;
     const std::string where = told_divergence(filter);
-    result.findings.push_back({"the diagram diverges along the record, although it is corrected at every row" +
-                                   (where.empty() ? "" : ", " + where),
-                               "nothing can be said: units, signs or parameters are far off", true, false});
+    result.findings.push_back(
+        {"the diagram diverges along the record, although it is corrected at every row" +
+             (where.empty() ? "" : ", " + where),
+         "nothing can be said: units, signs or parameters are far off", true, false});
     return result;
   }
   result.trail = found->trail;

@@ -18,6 +18,8 @@ report::Notice notice_of(const Diagnosis& d) {
     case Verdict::explained:
       return {Severity::good, "What was found explains the record." + fall};
     case Verdict::partly_explained:
+      if (d.lacks_only_a_name)
+        return {Severity::warning, "What was found explains the record, but a function has no name." + fall};
       return {Severity::warning, "What was found does not explain everything." + fall};
     default:
       return {Severity::warning, "Something is missing that cannot be named."};

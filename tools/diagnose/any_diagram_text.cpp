@@ -16,6 +16,8 @@ std::string verdict_of(const Diagnosis& d) {
                                    "record is explained:"
                                  : "Missing, and with it the record is explained down to its noise:";
     case Verdict::partly_explained:
+      if (d.lacks_only_a_name)
+        return "Found, and with it the record is explained down to its noise; a function has no name:";
       return "Found, but something is left that this does not explain:";
     default:
       return "Something is missing that cannot be named.";

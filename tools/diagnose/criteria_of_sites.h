@@ -11,8 +11,9 @@ namespace loopwright::diagnosis::criteria {
 constexpr double most_averaged_away = 0.15;
 /// [readings] A mean needs all of its rows: if more means than these would be missing, none are made.
 constexpr double most_missing_of_means = 0.2;
-/// n Σ ρ² over 40 lags is near 40 when nothing is left; the largest of a thousand records is below this.
-constexpr double most_portmanteau_of_any_diagram = 120;
+/// n Σ ρ² over 40 lags is near 40 when nothing is left: χ² of 40 degrees of freedom exceeds this once in five
+/// thousand outputs. A heat exchanger whose wall is missing, told as four laws, leaves 85.
+constexpr double most_portmanteau_of_any_diagram = 80;
 /// [resolution / √12] What counts and a little noise leave of predictions and simulations.
 constexpr double most_error_of_counts = 1.1;
 /// Of a term to the signal at its site, root mean squares. Interpolation between the rows, and steps of the

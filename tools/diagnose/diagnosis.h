@@ -146,8 +146,9 @@ struct Diagnosis {
   std::vector<SuggestedExperiment> suggested;
   std::vector<RecordFinding> findings;
   std::vector<NotLookedFor> not_looked_for;
-  std::string measured_port;  ///< without roles: that of the errors
-  bool has_roles = true;      ///< an axis; without roles any diagram, and no force is singled out
+  std::string measured_port;  ///< without roles: that of the errors, the one that the diagram misses worst
+  bool lacks_only_a_name = false;  ///< without roles: a function without a name explains all that was left
+  bool has_roles = true;           ///< an axis; without roles any diagram, and no force is singled out
   std::vector<MovedParameter> moved_parameters;  ///< without roles
   std::vector<std::string> not_observable;       ///< without roles: sentences
   std::vector<RefusedEffect> refused;

@@ -44,6 +44,7 @@ std::string to_json(const Diagnosis& d) {
                    {"after", d.error_after},
                    {"noise_floor", d.noise_floor},
                    {"unit", d.force_unit}};
+  if (!d.has_roles) json["error"]["port"] = d.measured_port;
   json["remainder"]["variables"] = d.remainder_variables;
   if (d.remainder_interval)
     json["remainder"]["interval"] = {{"record", d.remainder_interval->record},

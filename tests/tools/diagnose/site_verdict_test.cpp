@@ -79,6 +79,43 @@ TEST(SiteVerdict, SixChangesAtOnceNameNothing) {
   EXPECT_EQ(five.verdict, Verdict::explained) << to_text(five);
 }
 
+TEST(SiteVerdict, TheErrorsToldAreThoseOfTheOutputThatTheDiagramMissesWorst) {
+  Tanks m;
+  m.second_outlet = 0.0055;  // the first tank is as stated
+  Answered a(tanks(m, 63));
+  a.move("second_outlet");
+  const Diagnosis d = a.answer();
+  EXPECT_EQ(d.measured_port, "level2.y");
+  EXPECT_EQ(d.measured_unit, "m");
+  EXPECT_NEAR(d.steps.front().force_rmse, d.error_before, 0.2 * d.error_before);
+  EXPECT_GT(d.steps.front().simulation_rmse, 0.01) << "of the second level, not of the first";
+}
+TEST(SiteVerdict, AWidthIsNotNegativeAnywhereInItsInterval) {
+  Oscillator m;
+  m.force = [](double, double v) { return std::tanh(v / 1e-3); };
+  Answered a(oscillator(m, 64));
+  a.add("sign", "mass.velocity", -1);
+  SiteTerm& term = a.search.found.terms.front();
+  term.nonlinear[0] = 1e-3, term.low[0] = 1e-9, term.high[0] = 0.1;
+  a.fitter.fit_noise(a.search.found);
+  const Diagnosis d = a.answer();
+  ASSERT_EQ(d.effects.front().parameters.size(), 2u);
+  for (const DiagnosedParameter& p : d.effects.front().parameters)
+    if (p.name == "width") EXPECT_GE(p.low, 0) << to_text(d);
+}
+TEST(SiteVerdict, ProportionsToTwoSignalsMayBeTheirProduct) {
+  Answered a(shaken(0.05));
+  a.add("linear", "mass.position", 1);
+  EXPECT_THAT(a.answer().not_observable, Not(Contains(HasSubstr("product"))));
+  a.add("linear", "mass.velocity", 0.1);
+  EXPECT_THAT(a.answer().not_observable,
+              Contains(HasSubstr("linear(mass.position) and net.sum: linear(mass.velocity) may be one law")));
+}
+TEST(SiteVerdict, SitesThatLookAlikeAreToldInOneSentence) {
+  EXPECT_THAT(Answered(shaken(0.05)).answer().not_observable,
+              Contains(HasSubstr("what acts at net.sum and what acts at shaker.u look alike")));
+}
+
 /// The force has so much noise that a simulation misses by more than that of the sensor.
 TEST(SiteVerdict, NoiseInsideThePlantIsToldByItsSize) {
   Answered a(shaken(0.5));

@@ -4,6 +4,8 @@
 #include <cmath>
 #include "models/random/philox.h"
 #include "tools/diagnose/criteria.h"
+#include "tools/diagnose/search/term_text.h"
+#include "tools/diagnose/wording.h"
 
 namespace loopwright::diagnosis {
 namespace {
@@ -77,11 +79,33 @@ std::vector<std::string> alike_sites(SiteFitter& fitter, SiteHypothesis h) {
     }
     columns.emplace_back(s, column.normalized());
   }
-  for (size_t a = 0; a < columns.size(); ++a)
-    for (size_t b = a + 1; b < columns.size(); ++b)
-      if (std::abs(columns[a].second.dot(columns[b].second)) > criteria::alike_responses)
-        sentences.push_back(fmt::format("what acts at {} and what acts at {} look alike in what is measured",
-                                        sites[columns[a].first].name, sites[columns[b].first].name));
+  while (!columns.empty()) {  // those that look like the first of them
+    const Eigen::VectorXd first = columns.front().second;
+    std::vector<std::string> alike;
+    std::erase_if(columns, [&](const auto& column) {
+      if (!(std::abs(first.dot(column.second)) > criteria::alike_responses)) return false;
+      alike.push_back("what acts at " + sites[column.first].name);
+      return true;
+    });
+    if (alike.size() > 1)
+      sentences.push_back(loopwright::joined(alike, " and ") + " look alike in what is measured");
+  }
+  return sentences;
+}
+
+std::vector<std::string> possible_products(const SiteModel& model, const SiteHypothesis& h) {
+  std::vector<std::string> sentences;
+  const auto is_linear = [](const SiteTerm& term) { return term.shape->name == "linear"; };
+  for (size_t a = 0; a < h.terms.size(); ++a)
+    for (size_t b = a + 1; b < h.terms.size(); ++b) {
+      const SiteTerm &one = h.terms[a], &other = h.terms[b];
+      if (!is_linear(one) || !is_linear(other) || one.site != other.site || one.variable == other.variable)
+        continue;
+      sentences.push_back(
+          fmt::format("{} and {} may be one law of both signals, such as their product, which near one point "
+                      "of operation is a law of each",
+                      describe(model, one), describe(model, other)));
+    }
   return sentences;
 }
 

@@ -111,6 +111,16 @@ double explained_by_noise(const SiteErrors& errors, const SiteNoise& noise, size
                    criteria::most_noise_of_simulations * of_states);
 }
 
+bool simulates_worse(const SiteErrors& errors, const SiteErrors& nominal, bool holds_out) {
+  if (errors.diverges || nominal.diverges) return errors.diverges;
+  bool helps = !holds_out;
+  for (size_t j = 0; j < errors.simulated.size(); ++j) {
+    if (errors.simulated[j] > criteria::worse_simulation_of_any_diagram * nominal.simulated[j]) return true;
+    helps |= errors.simulated[j] < nominal.simulated[j] || errors.held_out[j] < nominal.held_out[j];
+  }
+  return !helps;
+}
+
 bool is_exact(const SiteErrors& errors, const SignalRecord& record) {
   if (errors.diverges) return false;
   for (size_t j = 0; j < errors.simulated.size(); ++j) {

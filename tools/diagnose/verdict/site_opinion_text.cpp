@@ -21,7 +21,7 @@ void tell_second_opinion(const SiteModel& model, const SecondOpinion& opinion, D
   finding.what = fmt::format(
       "noise of {} in every sample would explain it whatever the diagram lacks (not measured: {})",
       loopwright::joined(noisy, " and "), loopwright::joined(unmeasured, ", "));
-  const std::string& unit = result.measured_unit;
+  const std::string& unit = model.record().outputs.front().unit;
   const std::string other = opinion.other.empty() ? "nothing" : loopwright::joined(opinion.other, " + ");
   if (opinion.is_lost)
     finding.cost =

@@ -37,6 +37,7 @@ class Telling {
     tell_terms(), tell_parameters(), tell_steps();
     if (search_.second_opinion) tell_second_opinion(model_, *search_.second_opinion, result_);
     result_.not_observable = alike_sites(fitted_, found_);
+    std::ranges::move(possible_products(model_, found_), std::back_inserter(result_.not_observable));
     std::vector<bool> optional(found_.terms.size()), none(found_.terms.size());
     for (size_t t = 0; t < optional.size(); ++t) optional[t] = result_.effects[t].is_optional;
     result_.additions = site_additions(model_, found_, optional);
@@ -56,6 +57,16 @@ class Telling {
     return {std::move(name), std::move(unit), value, value - half, value + half, false};
   }
 
+  /// One that is positive, such as a width, is so in all of its interval.
+  DiagnosedParameter own_parameter(const std::vector<FittedNumber>& numbers, size_t i,
+                                   const SiteTerm& term) const {
+    const auto index = size_t(numbers[i].index);
+    DiagnosedParameter p = number(numbers, i, std::string(term.shape->nonlinear[index]),
+                                  unit_of_own_parameter(model_, term, index));
+    if (term.low[index] >= 0 && p.value >= 0) p.low = std::max(p.low, 0.0);
+    return p;
+  }
+
   void tell_terms() {
     const std::vector<FittedNumber> numbers = fitted_numbers(found_);
     SiteHypothesis h = found_;
@@ -72,8 +83,7 @@ class Telling {
         if (numbers[i].kind == FittedNumber::Kind::factor || numbers[i].owner != int(t)) continue;
         const size_t index = size_t(numbers[i].index);
         if (numbers[i].kind == FittedNumber::Kind::nonlinear)
-          effect.parameters.push_back(number(numbers, i, std::string(term.shape->nonlinear[index]),
-                                             unit_of_own_parameter(model_, term, index)));
+          effect.parameters.push_back(own_parameter(numbers, i, term));
         else if (!is_unknown_function(*term.shape))
           effect.parameters.push_back(number(numbers, i, std::string(term.shape->coefficients[index]),
                                              unit_of_coefficient(model_, term)));
@@ -156,58 +166,41 @@ class Telling {
   }
 
   void tell_steps() {
-    const auto add = [&](const SiteHypothesis& h, std::vector<std::string> added) {
-      const SiteErrors errors = errors_of(whole_, h);
+    const auto add = [&](const SiteErrors& errors, std::vector<std::string> added) {
       constexpr double none = std::numeric_limits<double>::quiet_NaN();
       DiagnosisStep step{std::move(added), none, none, none};
       if (!errors.diverges)
-        step.force_rmse = errors.predicted[0], step.held_out_force_rmse = errors.held_out[0],
-        step.simulation_rmse = errors.simulated[0];
+        step.force_rmse = errors.predicted[shown_], step.held_out_force_rmse = errors.held_out[shown_],
+        step.simulation_rmse = errors.simulated[shown_];
       result_.steps.push_back(std::move(step));
-      return errors;
     };
-    nominal_ = add(search_.nominal, {});
+    nominal_ = errors_of(whole_, search_.nominal);
+    shown_ = missed_output(nominal_, found_.noise, 0).value_or(0);
+    show_output(model_.record().outputs[shown_], result_);
+    add(nominal_, {});
     std::vector<std::string> named;
     for (const SiteHypothesis& h : search_.steps) {
       std::vector<std::string> added;
       for (const SiteTerm& term : h.terms)
         if (const std::string name = describe(model_, term); std::ranges::find(named, name) == named.end())
           added.push_back(name), named.push_back(name);
-      if (!added.empty()) add(h, added);  // otherwise terms were only removed
+      if (!added.empty()) add(errors_of(whole_, h), added);  // otherwise terms were only removed
     }
-    errors_ = add(found_, {"as answered"});
+    errors_ = errors_of(whole_, found_);
+    add(errors_, {"as answered"});
     result_.holds_out = model_.record().held_out_from < model_.record().rows();
     const bool held = result_.holds_out;
-    if (!nominal_.diverges) result_.error_before = held ? nominal_.held_out[0] : nominal_.predicted[0];
+    if (!nominal_.diverges)
+      result_.error_before = held ? nominal_.held_out[shown_] : nominal_.predicted[shown_];
     if (errors_.diverges) {
       result_.error_after = result_.steps.back().force_rmse;
       return;
     }
-    result_.error_after = held ? errors_.held_out[0] : errors_.predicted[0];
-    result_.noise_floor = errors_.noise[0];
+    result_.error_after = held ? errors_.held_out[shown_] : errors_.predicted[shown_];
+    result_.noise_floor = errors_.noise[shown_];
     result_.mean_square = errors_.mean_square, result_.held_out_mean_square = errors_.held_out_mean_square;
     result_.portmanteau = errors_.portmanteau;
     result_.measurement_noise = found_.noise.measurement;
-  }
-
-  /// The simulation must not contradict what one-step predictions say.
-  bool simulates_worse() const {
-    if (errors_.diverges) return true;
-    for (size_t j = 0; j < errors_.simulated.size(); ++j)
-      if (!nominal_.diverges &&
-          errors_.simulated[j] > criteria::worse_simulation_of_any_diagram * nominal_.simulated[j])
-        return true;
-    return helps_nowhere();
-  }
-
-  /// Neither the predictions of held-out rows nor a simulation of any output are better than those of the
-  /// diagram as it is.
-  bool helps_nowhere() const {
-    if (!result_.holds_out || nominal_.diverges) return false;
-    for (size_t j = 0; j < errors_.simulated.size(); ++j)
-      if (errors_.simulated[j] < nominal_.simulated[j] || errors_.held_out[j] < nominal_.held_out[j])
-        return false;
-    return true;
   }
 
   std::optional<size_t> missed_by_far() const {
@@ -323,7 +316,7 @@ class Telling {
     const bool is_white = !errors_.diverges && !errors_.leaves_slow_error && are_disturbances_small() &&
                           errors_.portmanteau < criteria::most_portmanteau_of_any_diagram;
     const bool names = !result_.effects.empty() || !result_.moved_parameters.empty();
-    const bool worse = names && simulates_worse();
+    const bool worse = names && simulates_worse(errors_, nominal_, result_.holds_out);
     const bool is_open =
         (names && search_.second_opinion && search_.second_opinion->is_open() && missed_by_far()) ||
         has_untold_terms() || are_too_many_changes() || are_many_changes_in_vain() ||
@@ -349,8 +342,10 @@ class Telling {
       result_.verdict = Verdict::nothing_missing;
     else if (worse || (!names && (!is_white || misses_held_out)))
       result_.verdict = Verdict::unexplained;
-    else if (!is_white || has_unknown || is_open || is_bent || misses_held_out || may_stand_for_an_effect())
+    else if (!is_white || is_open || is_bent || misses_held_out || may_stand_for_an_effect())
       result_.verdict = Verdict::partly_explained;
+    else if (has_unknown)
+      result_.verdict = Verdict::partly_explained, result_.lacks_only_a_name = true;
     else
       result_.verdict = names ? Verdict::explained : Verdict::nothing_missing;
   }
@@ -371,6 +366,7 @@ class Telling {
   SiteHypothesis found_;
   std::vector<size_t> place_;  ///< of each of its terms among those of the search
   bool is_left_out_ = false, is_input_questioned_ = false;
+  size_t shown_ = 0;  ///< the output whose errors are told: the one that the diagram misses worst
   Diagnosis& result_;
   SiteFitter fitted_, whole_;
   Eigen::MatrixXd covariance_;
@@ -378,6 +374,10 @@ class Telling {
 };
 
 }  // namespace
+
+void show_output(const RecordedOutput& output, Diagnosis& result) {
+  result.measured_port = output.port, result.measured_unit = result.force_unit = output.unit;
+}
 
 void tell_sites(SiteFilter& filter, const SiteSearchResult& search, Diagnosis& result) {
   Telling(filter, search, result).run();

@@ -5,6 +5,9 @@
 
 namespace loopwright::diagnosis {
 
+/// The one whose errors are told.
+void show_output(const RecordedOutput& output, Diagnosis& result);
+
 /// Effects, moved parameters, errors of prediction and simulation, verdict, and what the record cannot show.
 void tell_sites(SiteFilter& filter, const SiteSearchResult& search, Diagnosis& result);
 
