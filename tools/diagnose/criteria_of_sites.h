@@ -104,6 +104,11 @@ constexpr double most_lost_by_fewer_changes = 50;
 /// effect without a name does to the parameters that resemble it.
 constexpr double small_change_of_parameter = 0.02;
 
+/// [of its mean square] What a function of one signal predicts of a slow disturbance that is an effect, and
+/// its levels. Of noise no function does over stretches of a record to which it was not fitted.
+constexpr double least_share_of_disturbance = 0.3;
+constexpr size_t levels_of_disturbance = 12;
+
 // Which candidates of any diagram are fitted.
 
 /// [of the best gain] By which a candidate may be behind: after its first steps, in which a law that is

@@ -10,6 +10,7 @@
 #include "tools/diagnose/verdict/site_opinion_text.h"
 #include "tools/diagnose/wording.h"
 #include "tools/diagnose/verdict/alike_sites.h"
+#include "tools/diagnose/verdict/followed_signal.h"
 #include "tools/diagnose/verdict/held_out_terms.h"
 #include "tools/diagnose/verdict/site_additions.h"
 #include "tools/diagnose/verdict/site_covariance.h"
@@ -295,25 +296,33 @@ class Telling {
     return !contradicted.empty();
   }
 
-  /// Tells the slow disturbances of the answer. Whether they are small enough to be noise.
-  bool are_disturbances_small() {
+  /// Tells the slow disturbances of the answer. Whether they are small and follow nothing, as noise does.
+  bool are_disturbances_noise() {
     const std::vector<Disturbance> list = disturbances_of(fitted_, found_);
-    for (const Disturbance& d : list) {
+    bool are_noise = true;
+    for (size_t i = 0; i < list.size(); ++i) {
+      const Disturbance& d = list[i];
+      const auto followed = followed_signal(fitted_, found_, i);
+      const bool is_noise = d.is_small() && !followed;
+      are_noise &= is_noise;
       const Site& site = model_.sites()[size_t(d.site)];
       result_.slow_disturbances.push_back({site.name, unit_text(site.unit), d.size, d.share, d.time});
       result_.findings.push_back(
           {fmt::format("a slow disturbance at {}: {}, {:.1f} % of the signal, alike for {:.2g} s", site.name,
                        shown(d.size, unit_text(site.unit)), 100 * d.share, d.time),
-           d.is_small() ? "it is taken for noise"
-                        : "so much of it may stand for an effect that nothing here names",
-           !d.is_small(), false});
+           is_noise ? "it is taken for noise"
+           : followed
+               ? fmt::format("{:.0f} % of it follow {}: it stands for an effect that nothing here names",
+                             100 * followed->share, followed->name)
+               : "so much of it may stand for an effect that nothing here names",
+           !is_noise, false});
     }
-    return std::ranges::all_of(list, &Disturbance::is_small);
+    return are_noise;
   }
 
   void judge() {
     const bool has_unknown = !result_.remainder_variables.empty();
-    const bool is_white = !errors_.diverges && !errors_.leaves_slow_error && are_disturbances_small() &&
+    const bool is_white = !errors_.diverges && !errors_.leaves_slow_error && are_disturbances_noise() &&
                           errors_.portmanteau < criteria::most_portmanteau_of_any_diagram;
     const bool names = !result_.effects.empty() || !result_.moved_parameters.empty();
     const bool worse = names && simulates_worse(errors_, nominal_, result_.holds_out);
