@@ -99,9 +99,9 @@ TEST(SiteVerdict, AWidthIsNotNegativeAnywhereInItsInterval) {
   term.nonlinear[0] = 1e-3, term.low[0] = 1e-9, term.high[0] = 0.1;
   a.fitter.fit_noise(a.search.found);
   const Diagnosis d = a.answer();
-  ASSERT_EQ(d.effects.front().parameters.size(), 2u);
-  for (const DiagnosedParameter& p : d.effects.front().parameters)
-    if (p.name == "width") EXPECT_GE(p.low, 0) << to_text(d);
+  const auto width = std::ranges::find(d.effects.front().parameters, "width", &DiagnosedParameter::name);
+  ASSERT_NE(width, d.effects.front().parameters.end());
+  EXPECT_GE(width->low, 0) << to_text(d);
 }
 TEST(SiteVerdict, ProportionsToTwoSignalsMayBeTheirProduct) {
   Answered a(shaken(0.05));

@@ -1,4 +1,5 @@
 #include "tools/diagnose/verdict/followed_signal.h"
+#include <algorithm>
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/verdict/smooth_share.h"
 
@@ -43,19 +44,21 @@ std::optional<FollowedSignal> followed_signal(SiteFitter& fitter, SiteHypothesis
   FollowedSignal best{"", criteria::least_share_of_disturbance};
   const auto compare = [&](std::span<const double> signal, std::span<const double> side, std::string name) {
     const double share = smooth_share(slow, signal, criteria::levels_of_disturbance, stretch, side);
-    if (share > best.share) best = {std::move(name), share};
+    if (share > best.share + (best.name.empty() ? 0 : criteria::least_dependence))
+      best = {std::move(name), share};
   };
   const std::vector<SiteVariable>& variables = model.variables();
-  for (size_t v = 0; v < variables.size(); ++v) {
-    if (model.nearness(site, int(v)) != Nearness::near) continue;
-    const std::vector<double> signal = course.of_variable(variables[v]);
-    compare(signal, {}, variables[v].name);
-    for (size_t s = 0; s < variables.size(); ++s)
-      if (s != v && variables[s].quantity == Quantity::velocity &&
-          model.nearness(site, int(s)) == Nearness::near)
-        compare(signal, course.of_variable(variables[s]),
-                variables[v].name + " and the direction of " + variables[s].name);
-  }
+  std::vector<size_t> near;
+  for (size_t v = 0; v < variables.size(); ++v)
+    if (model.nearness(site, int(v)) == Nearness::near) near.push_back(v);
+  // What only follows from a state comes after it.
+  std::ranges::stable_partition(near, [&](size_t v) { return variables[v].is_state; });
+  for (const size_t v : near) compare(course.of_variable(variables[v]), {}, variables[v].name);
+  for (const size_t v : near)
+    for (const size_t side : near)
+      if (side != v && variables[side].quantity == Quantity::velocity)
+        compare(course.of_variable(variables[v]), course.of_variable(variables[side]),
+                variables[v].name + " and the direction of " + variables[side].name);
   return best.name.empty() ? std::nullopt : std::optional(best);
 }
 
