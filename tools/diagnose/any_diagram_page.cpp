@@ -43,7 +43,7 @@ report::Section what_was_found(const Diagnosis& d) {
       const ShownInterval shown_here = shown_interval(p.value, p.low, p.high, p.unit);
       table.rows.push_back({p.name, shown_here.value, shown_here.range()});
     }
-    section.items.push_back(std::move(table));
+    if (!table.rows.empty()) section.items.push_back(std::move(table));
   }
   if (!d.moved_parameters.empty()) {
     report::Table table{

@@ -21,7 +21,7 @@ report::Section terms_at_their_sites(const Diagnosis& d) {
             "named effect, means over narrow ranges of the variable that determines most of it."
           : "Points: what the diagram lacks at the site with everything else in it, as a function without a "
             "name, of straight lines between these points, that was fitted in the place of the effect. Line: "
-            "the named effect."});
+            "the effect as it was found."});
   for (const MissingTerm& term : d.terms) {
     report::Plot plot;
     plot.title = fmt::format("{} at {}, over {}", words(term.effect), term.site,

@@ -2,10 +2,13 @@
 #include <gmock/gmock.h>
 #include <cmath>
 #include "tests/tools/diagnose/diagnosed_plant.h"
+#include "tools/diagnose/search/site_start.h"
+#include "tools/diagnose/verdict/site_plots.h"
 
 namespace loopwright::site_plots_test {
 namespace {
 
+using namespace diagnosis;
 using testing::Contains, testing::Field;
 
 double friction(double speed) { return 0.01 * std::tanh(speed / 0.5); }
@@ -38,6 +41,42 @@ TEST(SitePlots, PointsLieOnTheTrueLawAndTheShapeGoesThroughThem) {
   EXPECT_LT(std::sqrt(square / count), 0.1 * 0.01);
   for (size_t i = 0; i < term.shape_at.size(); ++i)
     EXPECT_NEAR(term.shape[i], -friction(term.shape_at[i]), 0.2 * 0.01) << term.shape_at[i];
+}
+
+/// Straight lines between nine nodes, which miss the true law a little: the points are nearer.
+TEST(SitePlots, AFunctionWithoutANameIsDrawn) {
+  const auto law = [](double x) { return 2 * std::sin(30 * x); };
+  Oscillator m;
+  m.force = [law](double x, double) { return law(x); };
+  const RecordedPlant files(oscillator(m, 32));
+  SiteModel model(files.diagram(), {files.experiment()}, {});
+  SiteFilter filter(model);
+  SiteFitter fitter(filter, model.record().held_out_from, [] { return false; });
+  SiteHypothesis nominal;
+  ASSERT_TRUE(start_from_stated(fitter, ErrorsOf::predictions, {}, nominal));
+  SiteTerm term;
+  term.shape = &unknown_functions()[0];
+  term.site = int(std::ranges::find(model.sites(), "net.sum", &Site::name) - model.sites().begin());
+  term.variable = int(std::ranges::find(model.variables(), "mass.position", &SiteVariable::name) -
+                      model.variables().begin());
+  const auto [low, high] = std::ranges::minmax(model.record().outputs[0].value);
+  term.nonlinear = {low, high};
+  for (int i = 0; i < term.shape->columns; ++i)
+    term.coefficient[size_t(i)] = -law(low + (high - low) * i / (term.shape->columns - 1));
+  SiteHypothesis found = nominal;
+  found.terms = {term};
+  fitter.fit_noise(found);
+  Diagnosis result;
+  add_site_plots(fitter, nominal, found, result);
+  ASSERT_EQ(result.terms.size(), 1u);
+  const MissingTerm& plot = result.terms.front();
+  ASSERT_GT(plot.at.size(), 10u);
+  double points = 0, line = 0;
+  for (size_t i = 0; i < plot.at.size(); ++i) {
+    points += std::pow(plot.found[i] + law(plot.at[i]), 2);
+    line += std::pow(term.value(plot.at[i]) + law(plot.at[i]), 2);
+  }
+  EXPECT_LT(points, 0.25 * line);
 }
 
 TEST(SitePlots, ErrorsBecomeWhite) {

@@ -116,8 +116,7 @@ void add_site_plots(SiteFitter& fitter, const SiteHypothesis& nominal, const Sit
   if (h.terms.empty() || !fitter.pass(h, true, pass)) return;
   const SiteModel& model = fitter.model();
   for (const SiteTerm& term : h.terms) {
-    const bool is_function_of_signal = !is_unknown_function(*term.shape) && !term.shape->remembered;
-    if (term.variable < 0 || !is_function_of_signal) continue;
+    if (term.variable < 0 || term.shape->remembered) continue;  // no function of a signal
     const TermPlot drawn(fitter, pass, term);
     if (!drawn.is_drawn()) continue;
     const SiteVariable& variable = model.variables()[size_t(term.variable)];
