@@ -36,6 +36,14 @@ TEST(BadRecord, AWrongSignIsToldAndNothingIsNamed) {
   EXPECT_EQ(d.verdict, Verdict::unexplained);
 }
 
+/// Of a machine that is driven, or that coasts: neither shows how large a force is.
+TEST(BadRecord, AnInputOfZeroThroughoutSupportsNoVerdict) {
+  const Diagnosis d = spoilt([](auto& force, auto&) { std::ranges::fill(force, 0.0); });
+  EXPECT_THAT(d.findings, finds("the recorded input is zero in every row"));
+  EXPECT_TRUE(d.effects.empty());
+  EXPECT_EQ(d.verdict, Verdict::unexplained);
+}
+
 TEST(BadRecord, MillimetresTakenForMetresAreTold) {
   const Diagnosis d = spoilt([](auto&, auto& position) {
     for (double& x : position) x *= 1000;

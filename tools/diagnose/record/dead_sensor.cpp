@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include "tools/diagnose/criteria.h"
 
 namespace loopwright::diagnosis {
@@ -13,6 +14,18 @@ void reject_if_constant(const RecordedSignal& compared, const Column& column, Pr
   auto& p = problems.error(compared.place, compared.pointer, "",
                            fmt::format("the measured \"{}\" never changes", compared.column));
   p.expected = "a signal that shows how the diagram answers its inputs";
+}
+
+size_t leaps_by_a_turn(std::span<const double> angle) {
+  constexpr double most_way = 0.25;  // [turns] of the motion within a row
+  size_t count = 0;
+  for (size_t k = 1; k < angle.size(); ++k) {
+    const double turns = std::abs(angle[k] - angle[k - 1]) / (2 * std::numbers::pi);
+    if (turns < most_way || std::isnan(turns)) continue;
+    if (std::abs(turns - 1) > most_way) return 0;
+    ++count;
+  }
+  return count;
 }
 
 bool is_noise_alone(std::span<const double> values) {

@@ -121,6 +121,20 @@ std::vector<RecordFinding> look_at_records(const Trials& trials,
                           "the sensor shows noise and no motion, and no effect can be named: see that it is "
                           "connected, and that its column belongs to this record",
                           true});
+  const auto is_driven = [](const Trial& trial) {
+    return trial.model->record().is_map || std::ranges::any_of(trial.input, [](double u) { return u != 0; });
+  };
+  if (std::ranges::none_of(trials.list, is_driven))
+    findings.push_back({"the recorded input is zero in every row",
+                        "how large any force is cannot be known, and nothing is said about the machine: see "
+                        "that its column is the right one, or begin the record with a push",
+                        true});
+  for (const Trial& trial : trials.list)
+    if (const MeasuredPort* position = trial.model->record().find("position"))
+      if (const size_t count = position->unit == "rad" ? leaps_by_a_turn(position->value) : 0; count > 0)
+        findings.push_back(
+            {fmt::format("the measured angle leaps by a turn in {} row{}", count, count == 1 ? "" : "s"),
+             "the sensor begins anew at each turn: add up its turns in the column", true});
   for (const Trial& trial : trials.list)
     if (const std::optional<double> ratio = velocity_over_rate(trial.model->record()))
       findings.push_back(

@@ -122,7 +122,8 @@ void add_site_plots(SiteFitter& fitter, const SiteHypothesis& nominal, const Sit
     const SiteVariable& variable = model.variables()[size_t(term.variable)];
     const Site& site = model.sites()[size_t(term.site)];
     MissingTerm& plot = result.terms.emplace_back();
-    plot.effect = term.shape->name, plot.site = site.name, plot.site_unit = unit_text(site.unit);
+    plot.effect = is_unknown_function(*term.shape) ? "function without a name" : term.shape->name;
+    plot.site = site.name, plot.site_unit = unit_text(site.unit);
     plot.variable = variable.name, plot.unit = unit_text(variable.unit);
     drawn.add_to(plot);
   }

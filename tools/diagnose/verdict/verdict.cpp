@@ -127,6 +127,8 @@ void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, c
     diagnosis.contradictions.push_back(std::move(why));
   else if (why = force_far_above_noise(trials, e.members, inverse, diagnosis); !why.empty())
     diagnosis.contradictions.push_back(std::move(why));
+  if (!std::isfinite(diagnosis.mean_square))
+    diagnosis.contradictions.push_back("the errors of the predictions could not be judged");
   if (is_input_taken_away(trials, *e.fitted))
     diagnosis.contradictions.push_back(
         "what is named takes nearly all of the input away: see that sensor and drive were on, and that time "
