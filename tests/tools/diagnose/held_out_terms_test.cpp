@@ -2,6 +2,7 @@
 #include "tools/diagnose/verdict/held_out_terms.h"
 #include <gmock/gmock.h>
 #include "tests/tools/diagnose/plants.h"
+#include "tests/tools/diagnose/site_term.h"
 
 namespace loopwright::held_out_terms_test {
 namespace {
@@ -27,14 +28,7 @@ class HeldOutTerms : public testing::Test {
     fitter.fit_noise(found);
   }
   SiteTerm term(std::string_view shape, std::string_view variable, double coefficient) const {
-    SiteTerm term;
-    term.shape = &*std::ranges::find(named_shapes(), shape, &TermShape::name);
-    term.site = int(std::ranges::find(model.sites(), "net.sum", &Site::name) - model.sites().begin());
-    if (!variable.empty())
-      term.variable = int(std::ranges::find(model.variables(), variable, &SiteVariable::name) -
-                          model.variables().begin());
-    term.coefficient[0] = coefficient;
-    return term;
+    return term_at_net_sum(model, shape, variable, coefficient);
   }
 
   RecordedPlant files{hardening()};

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <cmath>
 #include "tests/tools/diagnose/diagnosed_plant.h"
+#include "tests/tools/diagnose/site_term.h"
 #include "tools/diagnose/search/site_start.h"
 #include "tools/diagnose/verdict/site_errors.h"
 
@@ -32,14 +33,7 @@ class Answered {
     search.found.is_free[size_t(place - all.begin())] = true;
   }
   void add(std::string_view shape, std::string_view variable, double coefficient) {
-    SiteTerm term;
-    term.shape = &*std::ranges::find(named_shapes(), shape, &TermShape::name);
-    term.site = int(std::ranges::find(model.sites(), "net.sum", &Site::name) - model.sites().begin());
-    if (!variable.empty())
-      term.variable = int(std::ranges::find(model.variables(), variable, &SiteVariable::name) -
-                          model.variables().begin());
-    term.coefficient[0] = coefficient;
-    search.found.terms.push_back(term);
+    search.found.terms.push_back(term_at_net_sum(model, shape, variable, coefficient));
   }
   Diagnosis answer() {
     Diagnosis result;
