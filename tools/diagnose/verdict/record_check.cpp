@@ -130,8 +130,9 @@ std::vector<RecordFinding> look_at_records(const Trials& trials,
                         "that its column is the right one, or begin the record with a push",
                         true});
   for (const Trial& trial : trials.list)
-    if (const MeasuredPort* position = trial.model->record().find("position"))
-      if (const size_t count = position->unit == "rad" ? leaps_by_a_turn(position->value) : 0; count > 0)
+    if (const MeasuredPort* angle = trial.model->record().find("position");
+        angle && angle->unit == "rad" && !trial.model->record().is_map)
+      if (const size_t count = leaps_by_a_turn(angle->value); count > 0)
         findings.push_back(
             {fmt::format("the measured angle leaps by a turn in {} row{}", count, count == 1 ? "" : "s"),
              "the sensor begins anew at each turn: add up its turns in the column", true});
