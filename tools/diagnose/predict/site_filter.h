@@ -112,8 +112,8 @@ class SiteFilter {
     Eigen::VectorXd states;
   };
   const End& end() const { return end_; }
-  /// As many steps of the integration in a sample as make no difference, at rows along the pass. It is a share
-  /// of the size of a state.
+  /// As many steps of the integration in a sample as make no difference, at rows along the pass. It is a
+  /// share of the size of a state.
   void choose_substeps(const SitePass& pass, double difference = 1e-6);
 
  private:
