@@ -36,12 +36,20 @@ Improvement improvement_with(const DiagnoseOptions& options, const Diagnosis& re
   return improve(files.diagram, files.experiments, options.load, additions);
 }
 
-/// It must run along the records before it is written.
-void write_improved(const DiagnoseOptions& options, Diagnosis& result) {
+/// What cannot be simulated explains nothing, whether its diagram is asked for or not.
+void try_improved(const DiagnoseOptions& options, Diagnosis& result) {
   const Additions& additions = options.writes_all ? result.all_additions : result.additions;
-  const UserFiles files = files_of(result);
-  const Improvement improved = improve(files.diagram, files.experiments, options.load, additions);
-  write_if_it_runs(improved, files.diagram, files.experiments, options, result);
+  const bool is_asked_for = !options.improved_diagram.empty();
+  if (!is_asked_for && additions.effects.empty() && additions.parameters.empty()) return;
+  try {
+    const UserFiles files = files_of(result);
+    const Improvement improved = improve(files.diagram, files.experiments, options.load, additions);
+    const bool usable = is_usable(improved, files.diagram, files.experiments, options.load, result);
+    if (!usable && result.verdict == Verdict::explained) result.verdict = Verdict::partly_explained;
+    if (usable && is_asked_for) write_improved(improved, options, result);
+  } catch (const InputError&) {
+    if (is_asked_for) throw;
+  }
 }
 
 /// Nothing where the improved diagram cannot be made: `-o` says why.
@@ -100,7 +108,7 @@ Diagnosis diagnose_any_diagram(const std::string& diagram, const std::vector<std
   progress("prediction, simulation and verdict", 0.95);
   tell_sites(filter, *found, result);
   result.picture = picture_of_improved(options, result);
-  if (!options.improved_diagram.empty()) write_improved(options, result);
+  try_improved(options, result);
   return result;
 }
 

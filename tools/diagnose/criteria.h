@@ -105,6 +105,18 @@ constexpr double least_gain_of_early_input = 0.5;
 /// away, and something else looks like an input that is early and late.
 constexpr double least_unfelt_share = 0.02;
 
+// A sensor whose offset wanders: see search/wandering_sensor.h.
+
+/// [samples] In which it is forgotten: quicker is noise.
+constexpr double least_memory_of_offset = 30;
+/// [noise of the sensor] Its size, and where the search for it begins.
+constexpr double least_offset = 0.1, most_offset = 1e4, first_offsets[] = {3, 50};
+/// [-2 ln L] By which it must explain more than a load that moves by itself: either has two parameters or
+/// three. Both signs are few: what a load does in jumps is no wandering offset.
+constexpr double least_gain_of_offset = 0;
+/// [-2 ln L] The same of errors that nothing explains: many shapes of missing effects use it a little.
+constexpr double least_gain_of_offset_alone = 50;
+
 // Whiteness of the prediction errors.
 
 /// [lags] n Σ ρ² over them is near their number if the errors are white.
@@ -210,6 +222,9 @@ constexpr double least_step_gain = 0.01;
 constexpr double same_motion = 0.01;
 /// [mean square of the fitted rows] The held-out rows show something else.
 constexpr double most_held_out = 1.5;
+/// [range, in logarithms; range] Of a parameter, next to its ends: a fit that is pressed against the end of a
+/// logarithmic scale creeps towards it, and an amplitude is cut off there.
+constexpr double share_of_end = 1e-3, share_of_linear_end = 1e-6;
 /// [probability] Of an effect that ranks among the certain ones.
 constexpr double sure = 0.9;
 

@@ -17,7 +17,7 @@
 #include "tools/diagnose/verdict/plots.h"
 #include "tools/diagnose/search/prepare.h"
 #include "tools/diagnose/search/search.h"
-#include "tools/experiment/repeated_records.h"
+#include "tools/experiment/stated_roles.h"
 #include "tools/diagnose/search/unknown.h"
 #include "tools/diagnose/verdict/trial_run.h"
 #include "tools/diagnose/verdict/verdict.h"
@@ -347,36 +347,14 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
   result.additions = improver.additions(members_of(staircase.necessary()));
   result.all_additions = improver.additions(members_of(staircase.steps.size()));
   if (!options.improved_diagram.empty()) {
-    const size_t last = options.writes_all ? staircase.steps.size() : staircase.necessary();
-    write_if_it_runs(improver.with(members_of(last)), improver.file(), improver.experiments(), options,
-                     result);
+    const Improvement improved =
+        improver.with(members_of(options.writes_all ? staircase.steps.size() : staircase.necessary()));
+    if (is_usable(improved, improver.file(), improver.experiments(), options.load, result))
+      write_improved(improved, options, result);
   }
   add_plots(trials, inverse.front(), accepted, improver, units, options.load, result);
   result.trail.push_back("work: " + told_operations(trials.work->done()));
   return result;
-}
-
-/// Whether the experiments name roles; it is a problem if only some do.
-bool have_roles(const std::vector<std::string>& experiments) {
-  size_t with_roles = 0;
-  std::vector<std::shared_ptr<const Experiment>> all;
-  for (const std::string& path : experiments) {
-    Problems problems;  // reported by the path that is taken
-    const auto experiment = read_experiment(path, problems);
-    all.push_back(experiment);
-    with_roles += !experiment || problems.has_errors() || !experiment->roles.ports.empty();
-  }
-  if (with_roles == experiments.size() || with_roles == 0) {
-    Problems repeated;
-    refuse_repeated_records(all, repeated);
-    if (repeated.has_errors()) throw InputError(std::move(repeated));
-    return with_roles > 0;
-  }
-  Problems problems;
-  auto& p = problems.error({}, "/roles", "", "some of the experiments name roles, others do not");
-  p.expected = "\"roles\" in every experiment, or in none";
-  p.found = fmt::format("{} of {} experiments name roles", with_roles, experiments.size());
-  throw InputError(std::move(problems));
 }
 
 }  // namespace

@@ -37,6 +37,7 @@ struct LinearAxis {
   Eigen::Index position = -1, velocity = -1;  ///< among the states; -1: it is none
   Eigen::Index load_states = 0;  ///< the last ones, of loads that effects hang on the axis: see with_load()
   Eigen::VectorXd load_force;    ///< n; force that these loads consume; empty: none
+  Eigen::VectorXd wander;        ///< n; noise of each state alone, standard deviation; empty: none
   double inertia = 0;            ///< force per acceleration, of the driven mass
   double damping = 0;            ///< force per speed
   /// Null: each row is the same. Otherwise A is that of a row on which the last load acts.

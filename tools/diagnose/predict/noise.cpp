@@ -51,6 +51,7 @@ struct Steady {
     for (Eigen::Index i = own; i < n; ++i)  // nothing but the motion of the axis moves a load
       unit[i] = std::max(axis.A.row(i).head(own).cwiseAbs().dot(unit.head(own)), 1e-300);
     for (Eigen::Index p = 0; p < ports; ++p) output[p] = noise.measurement[size_t(p)];
+    if (axis.wander.size() > 0) unit.head(n) = unit.head(n).cwiseMax(axis.wander);
     unit[n] = noise.white;
     C = Eigen::MatrixXd::Zero(ports, n + 1);
     C.leftCols(n) = axis.C;
@@ -63,6 +64,7 @@ struct Steady {
     C = output.cwiseInverse().asDiagonal() * C * unit.asDiagonal();
     const Eigen::VectorXd w = white.cwiseQuotient(unit), s = slow.cwiseQuotient(unit);
     Q = w * w.transpose() + s * s.transpose();
+    if (axis.wander.size() > 0) Q.diagonal().head(n) += axis.wander.cwiseQuotient(unit.head(n)).cwiseAbs2();
     P = riccati(scaled_A, C, Q, Eigen::MatrixXd::Identity(ports, ports));
   }
 };

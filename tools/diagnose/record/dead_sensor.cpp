@@ -7,7 +7,8 @@
 
 namespace loopwright::diagnosis {
 
-void reject_if_constant(const RecordedSignal& compared, const Column& column, Problems& problems) {
+void reject_if_constant(const RecordedSignal& compared, const loopwright::Column& column,
+                        Problems& problems) {
   const std::vector<double>& values = column.values;
   const auto first = std::ranges::find_if(values, [](double v) { return std::isfinite(v); });
   if (std::any_of(first, values.end(), [&](double v) { return std::isfinite(v) && v != *first; })) return;

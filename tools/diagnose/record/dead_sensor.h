@@ -7,7 +7,7 @@ namespace loopwright::diagnosis {
 
 /// A problem if a measured signal has one value throughout: a model that did not answer its inputs either
 /// would agree with it.
-void reject_if_constant(const RecordedSignal& compared, const Column& column, Problems& problems);
+void reject_if_constant(const RecordedSignal& compared, const loopwright::Column& column, Problems& problems);
 
 /// Rows in which an angle leaps by a turn, because its sensor begins anew there. One that turns by a half
 /// within a row somewhere may well turn so fast: then none.

@@ -1,10 +1,12 @@
 /// An effect as the diagnosis uses it: columns along a path, and the admissible values of its parameters.
 #pragma once
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <string>
 #include <vector>
+#include "tools/diagnose/criteria.h"
 #include "tools/diagnose/predict/responses.h"
 #include "tools/effects/effect.h"
 #include "tools/effects/switched_effect.h"
@@ -22,7 +24,11 @@ struct CandidateParameter {
 
   /// Whether a value is at an end of the range; a fitted one is then reported as a warning, not as a result.
   bool ends_at(double value) const {
-    const double edge = 1e-6 * (high - low);
+    if (logarithmic && low > 0) {
+      const double edge = std::pow(high / low, criteria::share_of_end);
+      return value <= low * edge || value >= high / edge;
+    }
+    const double edge = criteria::share_of_linear_end * (high - low);
     return value <= low + edge || value >= high - edge;
   }
 };

@@ -5,66 +5,82 @@
 #include <optional>
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/predict/same_sums.h"  // for the whole program
-#include "tools/diagnose/search/maximum_likelihood.h"
+#include "tools/diagnose/search/noise_likelihood.h"
 
 namespace loopwright::diagnosis {
+
+std::vector<double> NoiseCoordinates::of(const Noise& noise) const {
+  std::vector<double> x{std::log(noise.white)};
+  if (free == FreeNoise::white) return x;
+  if (free == FreeNoise::white_and_slow) return x.push_back(std::log(noise.slow())), x;
+  x.push_back(std::log(free == FreeNoise::with_random_walk ? noise.step : noise.slow()));
+  for (double m : noise.measurement) x.push_back(std::log(m));
+  if (free == FreeNoise::all) x.push_back(std::log(noise.memory_samples()));
+  return x;
+}
+
+Noise NoiseCoordinates::at(const double* x) const {
+  Noise noise = start;
+  noise.white = std::exp(x[0]);
+  if (free == FreeNoise::white) return noise.step = start.step / start.white * noise.white, noise;
+  if (free != FreeNoise::white_and_slow)
+    for (size_t p = 0; p < noise.measurement.size(); ++p) noise.measurement[p] = std::exp(x[2 + p]);
+  if (free == FreeNoise::with_random_walk) return noise.step = std::exp(x[1]), noise;
+  if (free == FreeNoise::all) noise.memory = std::exp(-std::exp(-x[2 + noise.measurement.size()]));
+  noise.step = std::exp(x[1]) * std::sqrt(1 - noise.memory * noise.memory);
+  return noise;
+}
+
+double noise_misfit(const Trials& trials, size_t record, const LinearAxis& axis, const Prediction& prediction,
+                    const Gains& from, const Gains& to, std::vector<double>& error) {
+  const Trial& trial = trials.list[record];
+  const size_t ports = trials.ports();
+  with_gains(axis, prediction, from, to, error);
+  whiten(error, to);
+  trials.work->add(error.size(), 3 * Work::of_a_response);
+  size_t rows = 0;
+  double squares = 0, log_determinants = 0;
+  for (size_t k = 0; k < std::min(trial.held_out_from, error.size() / ports); ++k) {
+    if (!trial.usable[k]) continue;
+    ++rows;
+    if (to.rows) log_determinants += to.log_determinant_at(k);
+    for (size_t p = 0; p < ports; ++p) squares += error[k * ports + p] * error[k * ports + p];
+  }
+  return squares + (to.rows ? log_determinants : double(rows) * to.log_determinant);
+}
+
+std::vector<double> least_misfit(const std::function<double(const double*)>& misfit,
+                                 std::vector<double> start, const std::vector<double>& low,
+                                 const std::vector<double>& high) {
+  const auto evaluate = [](unsigned, const double* x, double*, void* data) {
+    return (*static_cast<const std::function<double(const double*)>*>(data))(x);
+  };
+  nlopt_opt optimiser = nlopt_create(NLOPT_LN_BOBYQA, unsigned(start.size()));
+  nlopt_set_min_objective(optimiser, evaluate, const_cast<void*>(static_cast<const void*>(&misfit)));
+  nlopt_set_lower_bounds(optimiser, low.data());
+  nlopt_set_upper_bounds(optimiser, high.data());
+  nlopt_set_initial_step1(optimiser, 0.7);
+  constexpr double flat = 0.02;  // [-2 ln L] A turn that gains less is the last one.
+  nlopt_set_ftol_abs(optimiser, flat);
+  nlopt_set_maxeval(optimiser, 60 * int(start.size()));
+  double value = 0;
+  nlopt_optimize(optimiser, start.data(), &value);
+  nlopt_destroy(optimiser);
+  return start;
+}
+
+double noise_misfit(const Trials& trials, const std::vector<Fitted>& fitted, const Noise& noise,
+                    std::vector<double>& error) {
+  double sum = 0;
+  for (size_t t = 0; t < fitted.size(); ++t) {
+    const Fitted& f = fitted[t];
+    const Gains gains = gains_of(f.axis, noise, trials.list[t].model->nominal_inertia());
+    sum += noise_misfit(trials, t, f.axis, f.prediction, f.gains, gains, error);
+  }
+  return std::isfinite(sum) ? sum : 1e300;
+}
+
 namespace {
-
-/// Logarithms of the free parameters of a noise.
-struct Coordinates {
-  FreeNoise free;
-  Noise start;
-
-  std::vector<double> of(const Noise& noise) const {
-    std::vector<double> x{std::log(noise.white)};
-    if (free == FreeNoise::white) return x;
-    if (free == FreeNoise::white_and_slow) return x.push_back(std::log(noise.slow())), x;
-    x.push_back(std::log(free == FreeNoise::with_random_walk ? noise.step : noise.slow()));
-    for (double m : noise.measurement) x.push_back(std::log(m));
-    if (free == FreeNoise::all) x.push_back(std::log(noise.memory_samples()));
-    return x;
-  }
-  Noise at(const double* x) const {
-    Noise noise = start;
-    noise.white = std::exp(x[0]);
-    if (free == FreeNoise::white) return noise.step = start.step / start.white * noise.white, noise;
-    if (free != FreeNoise::white_and_slow)
-      for (size_t p = 0; p < noise.measurement.size(); ++p) noise.measurement[p] = std::exp(x[2 + p]);
-    if (free == FreeNoise::with_random_walk) return noise.step = std::exp(x[1]), noise;
-    if (free == FreeNoise::all) noise.memory = std::exp(-std::exp(-x[2 + noise.measurement.size()]));
-    noise.step = std::exp(x[1]) * std::sqrt(1 - noise.memory * noise.memory);
-    return noise;
-  }
-};
-
-struct Objective {
-  const Trials& trials;
-  const std::vector<Fitted>& fitted;
-  Coordinates coordinates;
-  std::vector<double> error = {};  ///< of one evaluation
-
-  double operator()(const Noise& noise) {
-    double sum = 0;
-    const size_t ports = trials.ports();
-    for (size_t t = 0; t < trials.list.size(); ++t) {
-      const Trial& trial = trials.list[t];
-      const Gains gains = gains_of(fitted[t].axis, noise, trial.model->nominal_inertia());
-      with_gains(fitted[t].axis, fitted[t].prediction, fitted[t].gains, gains, error);
-      whiten(error, gains);
-      trials.work->add(error.size(), 3 * Work::of_a_response);
-      size_t rows = 0;
-      double squares = 0, log_determinants = 0;
-      for (size_t k = 0; k < std::min(trial.held_out_from, error.size() / ports); ++k) {
-        if (!trial.usable[k]) continue;
-        ++rows;
-        if (gains.rows) log_determinants += gains.log_determinant_at(k);
-        for (size_t p = 0; p < ports; ++p) squares += error[k * ports + p] * error[k * ports + p];
-      }
-      sum += squares + (gains.rows ? log_determinants : double(rows) * gains.log_determinant);
-    }
-    return std::isfinite(sum) ? sum : 1e300;
-  }
-};
 
 /// Of a slow force: spectral density at zero frequency over variance, in sample times.
 double samples_alike(const Noise& noise) { return (1 + noise.memory) / (1 - noise.memory); }
@@ -81,14 +97,9 @@ std::optional<Noise> as_white(const Trials& trials, const std::vector<Fitted>& f
   white.white = std::hypot(noise.white, noise.slow() * std::sqrt(samples_alike(noise)));
   white.step = criteria::next_to_no_slow_noise * white.white * std::sqrt(1 - noise.memory * noise.memory);
   white = fit_noise(trials, fitted, white, FreeNoise::white);
-  Objective objective{trials, fitted, {FreeNoise::all, noise}};
-  const double lost = objective(white) - objective(noise);
+  std::vector<double> error;
+  const double lost = noise_misfit(trials, fitted, white, error) - noise_misfit(trials, fitted, noise, error);
   return lost < criteria::most_lost_as_white ? std::optional(white) : std::nullopt;
-}
-
-double evaluate(unsigned, const double* x, double*, void* data) {
-  Objective& objective = *static_cast<Objective*>(data);
-  return objective(objective.coordinates.at(x));
 }
 
 }  // namespace
@@ -105,25 +116,17 @@ Noise search_noise(const Trials& trials) {
 }
 
 Noise fit_noise(const Trials& trials, const std::vector<Fitted>& fitted, const Noise& start, FreeNoise free) {
-  Objective objective{trials, fitted, {free, start}};
-  std::vector<double> x = objective.coordinates.of(start), low = x, high = x;
+  const NoiseCoordinates coordinates{free, start};
+  std::vector<double> x = coordinates.of(start), low = x, high = x, error;
   for (size_t i = 0; i < x.size(); ++i)
     low[i] -= std::log(criteria::noise_reach), high[i] += std::log(criteria::noise_reach);
   // If the sensor's quantization is the only noise, the force noise would go to zero.
   low[0] = std::max(low[0], std::log(criteria::least_white_noise * trials.force_rms));
   x[0] = std::max(x[0], low[0]), high[0] = std::max(high[0], x[0]);
-  nlopt_opt optimiser = nlopt_create(NLOPT_LN_BOBYQA, unsigned(x.size()));
-  nlopt_set_min_objective(optimiser, evaluate, &objective);
-  nlopt_set_lower_bounds(optimiser, low.data());
-  nlopt_set_upper_bounds(optimiser, high.data());
-  nlopt_set_initial_step1(optimiser, 0.7);
-  constexpr double flat = 0.02;  // [-2 ln L] A turn that gains less is the last one.
-  nlopt_set_ftol_abs(optimiser, flat);
-  nlopt_set_maxeval(optimiser, 60 * int(x.size()));
-  double value = 0;
-  nlopt_optimize(optimiser, x.data(), &value);
-  nlopt_destroy(optimiser);
-  return objective.coordinates.at(x.data());
+  const auto misfit = [&](const double* at) {
+    return noise_misfit(trials, fitted, coordinates.at(at), error);
+  };
+  return coordinates.at(least_misfit(misfit, std::move(x), low, high).data());
 }
 
 bool is_soon_forgotten(const Noise& noise) { return noise.memory_samples() < criteria::quick_noise; }

@@ -7,14 +7,14 @@ namespace {
 
 constexpr int iterations = 4;
 /// A parameter of the contact that is farther from the usual one than by this factor is doubted.
-constexpr double far = 1.5;
+constexpr double far_from_usual = 1.5;
 
 /// All shapes of a load but the first one, the gap, as they usually are; whether one of them was far from it.
 bool begin_anew(Member& load) {
   bool was_far = false;
   for (size_t i = 1; i < load.nonlinear.size(); ++i) {
     const double usual = load.candidate->nonlinear[i].start;
-    was_far |= std::abs(std::log(load.nonlinear[i] / usual)) > std::log(far);
+    was_far |= std::abs(std::log(load.nonlinear[i] / usual)) > std::log(far_from_usual);
     load.nonlinear[i] = usual;
   }
   return was_far;

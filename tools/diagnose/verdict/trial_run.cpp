@@ -57,15 +57,17 @@ std::optional<std::string> why_not_run(const Improvement& improved,
   return {};
 }
 
-void write_if_it_runs(const Improvement& improved, const std::shared_ptr<const SourceFile>& nominal,
-                      const std::vector<std::shared_ptr<const Experiment>>& experiments,
-                      const DiagnoseOptions& options, Diagnosis& result) {
-  if (const auto why = why_not_run(improved, nominal, experiments, options.load)) {
-    RecordFinding& finding = result.findings.emplace_back();
-    finding.what = "no improved diagram is written: " + *why;
-    finding.cost = "with what was found the diagram cannot be used";
-    return;
-  }
+bool is_usable(const Improvement& improved, const std::shared_ptr<const SourceFile>& nominal,
+               const std::vector<std::shared_ptr<const Experiment>>& experiments, const LoadOptions& load,
+               Diagnosis& result) {
+  const auto why = why_not_run(improved, nominal, experiments, load);
+  if (!why) return true;
+  result.findings.push_back({"with what was found the diagram cannot be used: " + *why,
+                             "no improved diagram is written", false, false});
+  return false;
+}
+
+void write_improved(const Improvement& improved, const DiagnoseOptions& options, Diagnosis& result) {
   result.improved = options.improved_diagram;
   result.improved_experiments = write(improved, result.experiments, result.improved);
   result.experiment_ports = improved.moved, result.taken_out_by = improved.taken_out_by;

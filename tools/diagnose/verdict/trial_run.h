@@ -15,9 +15,12 @@ std::optional<std::string> why_not_run(const Improvement& improved,
                                        const std::vector<std::shared_ptr<const Experiment>>& experiments,
                                        const LoadOptions& load);
 
-/// To the file of the options, if it can be run; otherwise the result says why not.
-void write_if_it_runs(const Improvement& improved, const std::shared_ptr<const SourceFile>& nominal,
-                      const std::vector<std::shared_ptr<const Experiment>>& experiments,
-                      const DiagnoseOptions& options, Diagnosis& result);
+/// Whether there is no such reason; otherwise it becomes a finding.
+bool is_usable(const Improvement& improved, const std::shared_ptr<const SourceFile>& nominal,
+               const std::vector<std::shared_ptr<const Experiment>>& experiments, const LoadOptions& load,
+               Diagnosis& result);
+
+/// To the file of the options.
+void write_improved(const Improvement& improved, const DiagnoseOptions& options, Diagnosis& result);
 
 }  // namespace loopwright::diagnosis
