@@ -86,6 +86,9 @@ Diagnosis diagnose_any_diagram(const std::string& diagram, const std::vector<std
   if (model.record().shortened) result.findings.push_back(*model.record().shortened);
   if (const size_t count = model.record().false_readings; count > 0)
     result.findings.push_back(readings_are_false(count, "they count as missing"));
+  for (const RecordedOutput& output : model.record().outputs)
+    if (output.leaps_by_a_turn > 0)
+      result.findings.push_back(angle_leaps(output.port, output.leaps_by_a_turn));
   if (const size_t count = take_unfelt_leaps_away(fitter); count > 0)
     result.findings.push_back(inputs_are_not_felt(count));
   const auto found = search_with_second_opinion(fitter, progress);

@@ -228,6 +228,9 @@ constexpr double share_of_end = 1e-3, share_of_linear_end = 1e-6;
 /// [probability] Of an effect that ranks among the certain ones.
 constexpr double sure = 0.9;
 
+/// [turns] That an angle moves within a row: more may be a turn that its sensor does not count.
+constexpr double most_way_within_row = 0.25;
+
 // Two sensors of one axis: see record/two_sensors.h.
 
 /// [s] A stretch whose way both tell: longer than what a tachometer's filter delays, shorter than most

@@ -32,12 +32,32 @@ constexpr double worse_simulation_of_any_diagram = 1.05;
 constexpr size_t simulations_of_any_diagram = 10;
 /// [of the record] The start, in which the filter settles: 1/20 of it.
 constexpr size_t settling_part = 20;
+/// [terms] Of one answer.
+constexpr size_t most_terms = 5;
+/// [criterion] What an added term and an exchange must gain, and within what a rival is declared: chance
+/// gains as much once among the some hundred terms that are tried.
+constexpr double least_improvement = 10, least_exchange = 3, rival_within = 10;
+/// [-2 ln L] What the second of two terms that are ranked together must gain: pairs are many.
+constexpr double least_gain_of_second = 40;
+/// [-2 ln L] What a late input must gain beyond all parameters, before it is taken by itself.
+constexpr double least_gain_over_parameters = 25;
+/// [its energy] What must be left of a column after projection: less is the rounding of the responses.
+constexpr double least_energy = 2e-3;
+/// [of a delay's gain] An input that is held gains as much as the delay, which then is none.
+constexpr double share_of_held = 0.9;
+/// [nats, beside those of the shape] A variable far from its site, derived from a state, a difference, a sum
+/// of what other sites add, an error of a sensor: each is less usual than a state beside its site.
+constexpr double of_far = 6, of_derived = 3, of_difference = 2, of_indirect_sum = 3, of_sensor = 3;
 /// [signal at its site, rms] Noise held over a sample, as the best predictions ask for. More of it may stand
 /// for a missing effect. Machines, heat and tanks have a hundredth.
 constexpr double most_process_noise = 0.05;
 /// [signal at its site, rms] Slow disturbance that is taken for noise. More of it may stand for a missing
 /// effect: those that matter begin at a twentieth.
 constexpr double most_slow_disturbance = 0.03;
+/// [-2 ln L] Of such a disturbance, which has two numbers.
+constexpr double least_gain_of_disturbance = 20;
+/// [longest record] The longest time of slow noise.
+constexpr double longest_slow_part = 0.1;
 /// [sites] Of slow disturbances beside what was found; and beside nothing but parameters, where a missing
 /// effect would be taken for several of them.
 constexpr size_t most_slow_disturbances = 3, most_first_disturbances = 1;

@@ -338,6 +338,7 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
   if (!accepted.runs.empty())
     result.simulation_horizon_s = accepted.runs.back().horizon_s,
     result.simulation_diverged = accepted.diverges, result.simulation_is_worse = accepted.is_worse;
+  if (accepted.has_few_simulations()) result.findings.push_back(too_few_simulations(accepted.runs.back()));
   tell_effects(conclusion, staircase, catalogue, units, result);
   tell_errors(trials, conclusion, inquiry, result);
   trials.run_along(Trials::Rows::all);

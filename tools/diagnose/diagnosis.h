@@ -181,6 +181,7 @@ struct Diagnosis {
   std::vector<MissingTerm> terms;  ///< of the effects that are not optional, in the first record
   struct Whiteness {
     std::vector<double> lag_s, before, after;  ///< correlation of prediction errors so far apart
+    std::string port;                          ///< without roles: the output, the one that is least white
     double most = 0;                           ///< 95 % of the correlations of white errors are smaller
   } whiteness;
   report::Graph picture;  ///< the improved diagram; empty without effects

@@ -67,7 +67,8 @@ report::Plot steps_of_the_error(const Diagnosis& d) {
 
 report::Plot whiteness(const Diagnosis& d) {
   report::Plot plot;
-  plot.title = "Whiteness of the prediction errors";
+  plot.title =
+      "Whiteness of the prediction errors" + (d.whiteness.port.empty() ? "" : " of " + d.whiteness.port);
   plot.x = {"Distance in time", "s"}, plot.y = {"Correlation", ""};
   plot.series.push_back({"nominal diagram", d.whiteness.lag_s, d.whiteness.before});
   if (!d.effects.empty() || !d.moved_parameters.empty())

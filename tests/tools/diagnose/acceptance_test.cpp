@@ -1,7 +1,10 @@
 // An effect stands only if the diagram simulates no worse with it.
 #include <gmock/gmock.h>
+#include <fstream>
 #include <numbers>
+#include <nlohmann/json.hpp>
 #include "tests/tools/diagnose/diagnosed.h"
+#include "tests/tools/diagnose/flawed_axis.h"
 #include "tests/tools/diagnose/hidden_axis.h"
 #include "tools/diagnose/verdict/acceptance.h"
 #include "tools/diagnose/verdict/free_run.h"
@@ -81,6 +84,27 @@ TEST(Acceptance, TheStaircaseOfTheSimulationFalls) {
   EXPECT_LT(d.steps.back().simulation_rmse, 0.1 * d.steps.front().simulation_rmse) << to_text(d);
   EXPECT_GT(d.simulation_horizon_s, 0.03);
   EXPECT_LT(d.simulation_horizon_s, 0.3);
+}
+
+/// Of a record that holds so much out.
+Diagnosis with_hold_out(double fraction) {
+  FlawedMachine machine;
+  machine.coulomb = 0.6, machine.duration = 5;
+  const FlawedAxis axis(machine);
+  auto json = nlohmann::json::parse(std::ifstream(axis.experiment()));
+  json["hold_out"]["fraction"] = fraction;
+  std::ofstream(axis.experiment()) << json.dump();
+  return diagnose(axis.diagram(), {axis.experiment()});
+}
+
+/// Three stretches at least, or it is told that the simulation has not judged.
+TEST(Acceptance, AShortHoldOutIsSimulatedInShorterStretches) {
+  const auto are_told_few = testing::Contains(
+      testing::Field(&RecordFinding::what, testing::HasSubstr("the rows that are simulated hold")));
+  const Diagnosis some = with_hold_out(0.06), few = with_hold_out(0.004);
+  EXPECT_THAT(some.findings, testing::Not(are_told_few)) << to_text(some);
+  EXPECT_LE(some.simulation_horizon_s, 0.06 * 5 / 8 + 1e-3);
+  EXPECT_THAT(few.findings, are_told_few) << to_text(few);
 }
 
 /// What the page draws is the axis: each force over its own variable, white errors, and the added blocks.

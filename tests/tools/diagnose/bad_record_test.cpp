@@ -1,6 +1,8 @@
 // Records that cannot support a verdict are named, with the consequence.
 #include <gmock/gmock.h>
+#include <filesystem>
 #include <fstream>
+#include <numbers>
 #include <sstream>
 #include "tests/tools/diagnose/diagnosed_plant.h"
 #include "tests/tools/diagnose/flawed_axis.h"
@@ -98,6 +100,26 @@ TEST(BadRecord, ZerosOfADeviceThatWasNotReadyAreTakenAway) {
   EXPECT_THAT(d.findings, finds("of recorded inputs are out of line"));
   expect_coulomb_friction(d);
 }
+/// A force that is straight between its rows spreads a wrong value over two samples.
+TEST(BadRecord, AWrongValueOfAnInputThatIsNotHeldIsTakenAway) {
+  FlawedMachine machine;
+  machine.input_is_linear = true, machine.coulomb = 0.6, machine.duration = 8;
+  const FlawedAxis axis(machine);
+  const std::filesystem::path file = std::filesystem::path(axis.diagram()).parent_path() / "record.csv";
+  std::stringstream read, written;
+  read << std::ifstream(file).rdbuf();
+  std::string line;
+  for (size_t row = 0; std::getline(read, line); ++row) {
+    const size_t from = line.find(','), to = line.find(',', from + 1);
+    written << (row % 1500 == 700 ? line.substr(0, from) + ",40" + line.substr(to) : line) << '\n';
+  }
+  std::ofstream(file) << written.str();
+  const Diagnosis d = diagnose(axis.diagram(), {axis.experiment()});
+  EXPECT_THAT(d.findings, finds("of recorded inputs are out of line")) << to_text(d);
+  ASSERT_EQ(d.effects.size(), 1u) << to_text(d);
+  EXPECT_EQ(d.effects[0].name, "coulomb_friction");
+  EXPECT_NEAR(d.effects[0].parameters[0].value, 0.6, 0.02);
+}
 TEST(BadRecord, PulsesThatTheMachineFeelsAreACommand) {
   HiddenAxis axis;
   WantedMotion wanted = there_and_back(0.3, 0.4);
@@ -107,6 +129,18 @@ TEST(BadRecord, PulsesThatTheMachineFeelsAreACommand) {
   const Diagnosis d = diagnose(axis.diagram(), {record});
   EXPECT_THAT(d.findings, Not(finds("out of line"))) << to_text(d);
   EXPECT_EQ(name_of(d.verdict), "nothing_missing") << to_text(d);
+}
+
+/// Without roles too.
+TEST(BadRecord, AnAngleThatBeginsAnewGivesNoVerdict) {
+  Plant plant = motor({}, 6);
+  plant.outputs = [](const Numbers& x) {
+    constexpr double turn = 2 * std::numbers::pi;
+    return Numbers{x[0], x[1] - turn * std::floor(x[1] / turn)};
+  };
+  const Diagnosis d = diagnosed(plant);
+  EXPECT_THAT(d.findings, finds("the measured rotor.position leaps by a turn")) << to_text(d);
+  EXPECT_EQ(d.verdict, Verdict::unexplained);
 }
 
 TEST(BadRecord, ASensorThatShowsNoiseAloneGivesNoVerdict) {

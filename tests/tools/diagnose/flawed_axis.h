@@ -31,11 +31,12 @@ struct FlawedMachine {
   std::vector<double> steady_speeds;  ///< instead of strokes: each one held, forward and back
   double oscillation_hz = 0;  ///< instead of strokes: a sine of this frequency and of the stroke's amplitude
   double force_noise = 0.01, sensor_noise = 5e-8, resolution = 2e-7;  ///< standard deviations, and a count
-  double velocity_noise = 0;  ///< of a velocity sensor, which then replaces the position
-  double origin = 0;          ///< position at the start
-  double jitter = 0;          ///< greatest error of a sampling instant, in sample times; the stamps tell it
-  double stamp_jitter = 0;    ///< greatest error of a stamp alone, in sample times
-  double stamp_quantum = 0;   ///< s; stamps are rounded to it
+  double wander = 0, wander_s = 2;  ///< of the position sensor's offset: first-order noise, and its time
+  double velocity_noise = 0;        ///< of a velocity sensor, which then replaces the position
+  double origin = 0;                ///< position at the start
+  double jitter = 0;         ///< greatest error of a sampling instant, in sample times; the stamps tell it
+  double stamp_jitter = 0;   ///< greatest error of a stamp alone, in sample times
+  double stamp_quantum = 0;  ///< s; stamps are rounded to it
   size_t loses_every = 0, repeats_every = 0;  ///< one row in this number
   size_t stale_every = 0;   ///< one reading in this number is that of the row before, for the controller too
   size_t holding_rows = 0;  ///< behind each, in which the command is held and nothing is read
@@ -82,6 +83,11 @@ class FlawedAxis {
   double normal() {
     const double radius = std::sqrt(-2 * std::log(uniform()));
     return radius * std::cos(2 * std::numbers::pi * uniform());
+  }
+
+  double next_offset() {
+    const double kept = std::exp(-machine_.sample_time / machine_.wander_s);
+    return offset_ = kept * offset_ + machine_.wander * std::sqrt(1 - kept * kept) * normal();
   }
 
   struct Wanted {
@@ -170,6 +176,7 @@ class FlawedAxis {
       const double next = instant(k + 1) + ahead_, step = next - now;
       const double behind = machine_.measured_late * T;
       double place = machine_.origin + (x - behind * v) + machine_.sensor_noise * normal();
+      if (machine_.wander > 0) place += next_offset();
       if (machine_.resolution > 0) place = std::round(place / machine_.resolution) * machine_.resolution;
       if (machine_.stale_every > 0 && k % machine_.stale_every == 5) place = last_place_;
       last_place_ = place;
@@ -257,7 +264,7 @@ class FlawedAxis {
   uint64_t state_;
   std::filesystem::path folder_;
   bool is_kept_ = false;
-  double last_place_ = 0, lagging_ = 0;
+  double last_place_ = 0, lagging_ = 0, offset_ = 0;
   double ahead_ = 0;  // of the next sampling instant
   double bent_ = 0;   // force of friction that builds up over a distance
   double load_x_ = 0, load_v_ = 0;

@@ -50,6 +50,15 @@ TEST(FollowedSignal, NoiseFollowsNone) {
   }
 }
 
+/// A mean is a function of any signal: of a disturbance that lasts a tenth of the record much of it is mean.
+TEST(FollowedSignal, NoiseThatLastsFollowsNone) {
+  for (uint64_t seed = 81; seed < 87; ++seed) {
+    Plant plant = oscillator({}, seed);
+    plant.slow_noise = {0.5}, plant.slow_samples = 400;
+    EXPECT_FALSE(followed(plant)) << seed;
+  }
+}
+
 TEST(SmoothShare, IsThatOfRowsToWhichTheFunctionWasNotFitted) {
   std::vector<double> x, bent, sided, side, other;
   for (size_t k = 0; k < 1000; ++k) {

@@ -1,6 +1,8 @@
 // Maps of balances: an axis held step by step, here computed from independently written forces.
 #include <gmock/gmock.h>
+#include <fstream>
 #include <numbers>
+#include <sstream>
 #include "tests/engine/written_diagram.h"
 #include "tests/tools/diagnose/diagnosed.h"
 #include "tools/compare/compare.h"
@@ -75,6 +77,25 @@ TEST(Map, NothingIsMissingWhereOnlyNoiseHolds) {
   const Diagnosis d = axis.diagnosed();
   EXPECT_EQ(d.verdict, Verdict::nothing_missing) << to_text(d);
   EXPECT_THAT(names(d), IsEmpty());
+}
+
+/// The second map is read and balanced, but nothing of it is fitted.
+TEST(Map, AnotherMapMayBeHeldOutAsAWhole) {
+  const HeldAxis axis([](double x, double direction) { return cogging(x) + 0.05 * direction; });
+  std::string rows = "t,F,x\n";
+  for (int k = 0; k < 1199; ++k) {
+    const double direction = k < 600 ? 1 : -1, at = step * (k < 600 ? k : 1198 - k);
+    rows += fmt::format("{:.3f},{:.9g},{:.9g}\n", 0.4 * k, cogging(at) + 0.05 * direction, at);
+  }
+  axis.with("other.csv", rows);
+  std::stringstream experiment;
+  experiment << std::ifstream(axis.path("map.json")).rdbuf();
+  std::string text = experiment.str();
+  text.replace(text.find("map.csv"), 7, "other.csv");
+  text.replace(text.find("\"drive\""), 7, "\"hold_out\": {\"fraction\": 1}, \"drive\"");
+  axis.with("other.json", text);
+  const Diagnosis d = diagnose(axis.path("axis.json"), {axis.path("map.json"), axis.path("other.json")});
+  EXPECT_THAT(names(d), ElementsAre("cogging", "coulomb_friction")) << to_text(d);
 }
 
 TEST(Map, WhatNoEffectExplainsGetsNoNameButItsVariable) {

@@ -43,6 +43,19 @@ TEST(SitePlots, PointsLieOnTheTrueLawAndTheShapeGoesThroughThem) {
     EXPECT_NEAR(term.shape[i], -friction(term.shape_at[i]), 0.2 * 0.01) << term.shape_at[i];
 }
 
+/// Of the output that is least white, at the distances of its own readings.
+TEST(SitePlots, WhitenessIsThatOfOneOutputAndItsReadings) {
+  Plant plant = thermal({}, 3);
+  plant.reads_every = {1, 5};
+  const Diagnosis d = diagnosed(plant);
+  ASSERT_FALSE(d.whiteness.lag_s.empty());
+  const bool is_slower = d.whiteness.port == "body2.y";
+  EXPECT_TRUE(is_slower || d.whiteness.port == "body1.y") << d.whiteness.port;
+  EXPECT_NEAR(d.whiteness.lag_s.front(), plant.sample_time * (is_slower ? 5 : 1), 0.05 * plant.sample_time);
+  const double readings = 0.75 * double(plant.rows) / (is_slower ? 5 : 1);
+  EXPECT_NEAR(d.whiteness.most, 1.96 / std::sqrt(readings), 0.2 / std::sqrt(readings));
+}
+
 /// Straight lines between nine nodes, which miss the true law a little: the points are nearer.
 TEST(SitePlots, AFunctionWithoutANameIsDrawn) {
   const auto law = [](double x) { return 2 * std::sin(30 * x); };

@@ -105,6 +105,20 @@ struct Passed {
   }
 };
 
+/// The first guess, from which the fit of the noise begins.
+TEST(Sites, NoiseOfASensorThatIsReadInSomeRowsIsGuessed) {
+  Plant plant = thermal({}, 2);
+  plant.reads_every = {1, 7};
+  const RecordedPlant files(plant);
+  SiteModel model(files.diagram(), {files.experiment()}, {});
+  const SiteNoise noise = SiteFilter(model).guess_noise();
+  ASSERT_EQ(noise.measurement.size(), 2u);
+  for (const double guess : noise.measurement) {
+    EXPECT_GT(guess, 0.3 * plant.measurement_noise[0]);
+    EXPECT_LT(guess, 10 * plant.measurement_noise[0]);
+  }
+}
+
 /// The errors of the model with a small term, against the linear response to the term along the path.
 void expect_response(Passed& p, const std::string& site, const std::string& variable,
                      const std::string& shape_name) {

@@ -20,7 +20,12 @@ class TrialRun : public testing::Test {
     improved.file = std::make_shared<SourceFile>(SourceFile{files.diagram(), changed});
     Problems problems;
     const auto experiment = load_experiment(files.experiment(), problems);
-    return diagnosis::why_not_run(improved, nominal, {experiment}, {});
+    Diagnosis result;
+    if (!diagnosis::is_usable(improved, nominal, {experiment}, {}, result))
+      EXPECT_EQ(result.findings.size(), 1u);
+    const auto why = diagnosis::why_not_run(improved, nominal, {experiment}, {});
+    EXPECT_EQ(why.has_value(), !result.findings.empty());
+    return why;
   }
 
   Plant plant = oscillator({}, 4);

@@ -53,6 +53,7 @@ Prediction balance(AxisModel& model, const Gains& gains, const Drives& drives) {
   Path& path = result.path = creep_along(model.record(), drives.input.size());
   path.input = drives.input, path.force = first_rows(model.driving_force(), path.samples());
   result.error.resize(path.samples()), result.slow.resize(path.samples());
+  if (path.samples() == 0) return result;  // all of it is held out
   model.start(path.position[0], 0);
   double d = 0, expected = 0;
   for (size_t k = 0; k < path.samples(); ++k) {

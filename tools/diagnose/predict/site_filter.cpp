@@ -1,5 +1,6 @@
 #include "tools/diagnose/predict/site_filter.h"
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -50,19 +51,21 @@ SiteNoise SiteFilter::guess_noise() const {
   for (int site : noise.sites) noise.process.push_back(site_scale_[size_t(site)]);
   for (const RecordedOutput& output : record_.outputs) {
     // The third difference of white noise has twenty times its variance; that of a smooth signal vanishes.
-    std::vector<double> squares;
-    const std::vector<double>& y = output.value;
-    for (size_t k = 3; k < y.size(); ++k)
-      if (const double d = y[k] - 3 * y[k - 1] + 3 * y[k - 2] - y[k - 3];
-          std::isfinite(d) && !record_.begins_at(k) && !record_.begins_at(k - 1) && !record_.begins_at(k - 2))
-        squares.push_back(d * d / 20);
-    double mean = 0;
-    for (double s : squares) mean += s / double(squares.size());
+    // A sensor may be read in some rows only.
+    double squares = 0, count = 0, largest = 0;
+    std::array<double, 4> reading{};
+    size_t readings = 0;  // one after the other, of one record
+    for (size_t k = 0; k < output.value.size(); ++k) {
+      if (record_.begins_at(k)) readings = 0;
+      if (!std::isfinite(output.value[k])) continue;
+      std::ranges::rotate(reading, reading.begin() + 1);
+      reading[3] = output.value[k], largest = std::max(largest, std::abs(reading[3]));
+      if (++readings < 4) continue;
+      squares += squared(reading[3] - 3 * reading[2] + 3 * reading[1] - reading[0]) / 20, count += 1;
+    }
     const double counts = output.resolution / std::sqrt(12);
-    double largest = 0;
-    for (double v : y)
-      if (std::isfinite(v)) largest = std::max(largest, std::abs(v));
-    noise.measurement.push_back(std::max({std::sqrt(mean), counts, 1e-9 * largest}));
+    noise.measurement.push_back(
+        std::max({count > 0 ? std::sqrt(squares / count) : 0.0, counts, 1e-9 * largest}));
   }
   return noise;
 }

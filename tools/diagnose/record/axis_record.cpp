@@ -11,6 +11,8 @@
 namespace loopwright::diagnosis {
 namespace {
 
+constexpr size_t fewest_rows = 3;  // of a motion: its acceleration needs so many
+
 /// Port and index of a role. Reports a problem if the experiment lacks a required role.
 const std::string* role_port(const Experiment& experiment, std::string_view role, Place* place) {
   for (size_t i = 0; i < experiment.roles.ports.size(); ++i)
@@ -138,27 +140,15 @@ void take_means(AxisRecord& record, size_t rows) {
   }
 }
 
-/// Where the rows lie, in samples.
-std::vector<double> places_of_rows(const AxisRecord& record) {
-  std::vector<double> at(record.rows());
-  for (size_t k = 1; k < at.size(); ++k)
-    at[k] = at[k - 1] + (record.duration.empty() ? 1 : record.duration[k - 1]);
-  return at;
-}
-
-/// Those that are not felt become what their neighbours say.
-void take_leaps_away(AxisRecord& record, InputLeaps leaps) {
-  if (record.is_map) return;
-  std::vector<size_t> rows =
-      unfelt_rows(record.input, leaps == InputLeaps::felt ? InputLeaps::unfelt : leaps);
+/// The input as recorded; values that are not felt become what their neighbours say. Whatever it does between
+/// its rows, a wrong value is seen in its own row.
+std::vector<double> without_leaps(const std::vector<double>& time, std::vector<double> input,
+                                  InputLeaps leaps, AxisRecord& record) {
+  if (record.is_map) return input;
+  const std::vector<size_t> rows = unfelt_rows(input, leaps == InputLeaps::felt ? InputLeaps::unfelt : leaps);
   record.leaps = leaps, record.input_leaps = rows.size();
-  if (leaps == InputLeaps::felt) return;
-  const std::vector<double> at = places_of_rows(record);
-  replace_readings(at, record.input, rows);
-  if (record.input_slope.empty()) return;
-  for (size_t i = 0, count = rows.size(); i < count; ++i) rows.push_back(rows[i] - 1);  // it leads there
-  std::ranges::sort(rows);
-  replace_readings(at, record.input_slope, rows);
+  if (leaps != InputLeaps::felt) replace_readings(time, input, rows);
+  return input;
 }
 
 /// A device that gives an old value now and then says nothing of the machine.
@@ -280,12 +270,24 @@ Experiment cut_open(const Experiment& experiment, const Plan& plan, Problems& pr
   return cut;
 }
 
+std::vector<double> places_of_rows(const AxisRecord& record) {
+  std::vector<double> at(record.rows());
+  for (size_t k = 1; k < at.size(); ++k)
+    at[k] = at[k - 1] + (record.duration.empty() ? 1 : record.duration[k - 1]);
+  return at;
+}
+
 AxisRecord read_axis_record(const Experiment& experiment, const Plan& plan, Problems& problems,
                             size_t rows_in_one, InputLeaps leaps) {
   AxisRecord record;
   record.title = experiment.title, record.path = experiment.path, record.place = experiment.place;
   const std::vector<double>& time = experiment.data.columns.front().values;
-  if (experiment.drives.empty() || time.size() < 2) return record;
+  if (experiment.drives.empty()) return record;
+  if (!experiment.is_map && time.size() < fewest_rows) {
+    problems.error(experiment.place, "/data", "", "too few rows for a diagnosis").expected =
+        fmt::format("at least {} rows", fewest_rows);
+    return record;
+  }
   if (const std::string why = too_many_missing(experiment); !why.empty()) {
     problems.error(experiment.place, "/data", "", why);
     return record;
@@ -296,7 +298,8 @@ AxisRecord read_axis_record(const Experiment& experiment, const Plan& plan, Prob
   const loopwright::Column& input = *experiment.data.find(drive.port);
   record.duration = grid.duration();
   record.is_map = experiment.is_map;  // its rows do not follow each other
-  OverSamples over = grid.driving(input.values, record.is_map ? BetweenRows::hold : drive.between_rows);
+  OverSamples over = grid.driving(without_leaps(time, input.values, leaps, record),
+                                  record.is_map ? BetweenRows::hold : drive.between_rows);
   record.input = std::move(over.mean), record.input_slope = std::move(over.change);
   record.input_unit = input.unit;
   for (const char* role : {"position", "velocity"}) {
@@ -309,13 +312,13 @@ AxisRecord read_axis_record(const Experiment& experiment, const Plan& plan, Prob
       if (!record.is_map) reject_if_constant(signal, column, problems);
       const auto written = parse_unit(signal.unit);  // rad, not 1
       const std::string unit = written && written->scale == 1 ? signal.unit : column.unit;
+      if (!record.is_map && unit == "rad") record.leaps_by_a_turn = leaps_by_a_turn(column.values);
       record.measured.push_back(
           {role, wanted, unit, signal.resolution, grid.measured(column.values), signal.rows});
     }
   }
   take_rows_of_sensors(record, problems);
   replace_false_readings(record);
-  take_leaps_away(record, leaps);
   if (rows_in_one == 0) rows_in_one = rows_for_one(record);
   if (rows_in_one > 1 && !record.is_map && record.duration.empty())
     take_means(record, rows_in_one), thin(record, rows_in_one);

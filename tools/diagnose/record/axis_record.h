@@ -42,9 +42,10 @@ struct AxisRecord {
   std::vector<char> false_rows;
   size_t false_readings = 0;  ///< of all sensors
   InputLeaps leaps = InputLeaps::felt;
-  size_t input_leaps = 0;   ///< values of the input that are out of line, or were and were taken away
-  bool is_thinned = false;  ///< several recorded rows are one
-  size_t rows_in_one = 1;   ///< of these, means over so many stand for them
+  size_t input_leaps = 0;      ///< values of the input that are out of line, or were and were taken away
+  size_t leaps_by_a_turn = 0;  ///< rows in which the angle begins anew, as recorded
+  bool is_thinned = false;     ///< several recorded rows are one
+  size_t rows_in_one = 1;      ///< of these, means over so many stand for them
   /// Role of a sensor that is read less often than the other one, and left out; empty: none.
   std::string left_out;
   /// The input changes while the sensor is not read: a controller then answers to what the record does not
@@ -62,6 +63,9 @@ struct AxisRecord {
     return nullptr;
   }
 };
+
+/// [sample times] Where the rows lie.
+std::vector<double> places_of_rows(const AxisRecord& record);
 
 /// Position, velocity and acceleration below the cut-off, and the input. The force that it produces is known
 /// only to the model.

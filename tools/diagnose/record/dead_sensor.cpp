@@ -18,12 +18,11 @@ void reject_if_constant(const RecordedSignal& compared, const loopwright::Column
 }
 
 size_t leaps_by_a_turn(std::span<const double> angle) {
-  constexpr double most_way = 0.25;  // [turns] of the motion within a row
   size_t count = 0;
   for (size_t k = 1; k < angle.size(); ++k) {
     const double turns = std::abs(angle[k] - angle[k - 1]) / (2 * std::numbers::pi);
-    if (turns < most_way || std::isnan(turns)) continue;
-    if (std::abs(turns - 1) > most_way) return 0;
+    if (turns < criteria::most_way_within_row || std::isnan(turns)) continue;
+    if (std::abs(turns - 1) > criteria::most_way_within_row) return 0;
     ++count;
   }
   return count;

@@ -56,6 +56,7 @@ SignalRecord read_signal_record(const Experiment& experiment, Problems& problems
     if (!column) continue;
     reject_if_constant(compared, *column, problems);
     record.outputs.push_back({compared.port, column->unit, compared.resolution, column->values});
+    if (column->unit == "rad") record.outputs.back().leaps_by_a_turn = leaps_by_a_turn(column->values);
     for (const size_t row : false_readings(column->values)) {
       record.outputs.back().value[row] = std::numeric_limits<double>::quiet_NaN();
       ++record.false_readings;

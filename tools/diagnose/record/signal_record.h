@@ -17,8 +17,9 @@ struct RecordedInput {
 
 struct RecordedOutput {
   std::string port, unit;
-  double resolution = 0;      ///< SI; 0: not stated
-  std::vector<double> value;  ///< SI, at the time stamps; NaN: no reading
+  double resolution = 0;       ///< SI; 0: not stated
+  std::vector<double> value;   ///< SI, at the time stamps; NaN: no reading
+  size_t leaps_by_a_turn = 0;  ///< rows in which an angle begins anew, as recorded
 };
 
 struct SignalRecord {

@@ -13,12 +13,15 @@ class Ways {
     xx_ += by_position * by_position, xv_ += by_position * by_velocity, vv_ += by_velocity * by_velocity;
     ++count_;
   }
-  /// Of the velocity to the rate of the position, and its standard error.
-  double ratio() const { return xv_ / xx_; }
+  /// Of the velocity to the rate of the position. Noise of the position makes the first too small, and that
+  /// of the velocity makes the second too large: the ratio lies between them.
+  double least() const { return xv_ / xx_; }
+  double most() const { return vv_ / xv_; }
+  /// Standard error.
   double deviation() const {
     return std::sqrt(std::max(0.0, vv_ - xv_ * xv_ / xx_) / double(count_ - 1) / xx_);
   }
-  bool are_enough() const { return count_ >= criteria::least_ways && xx_ > 0; }
+  bool are_enough() const { return count_ >= criteria::least_ways && xx_ > 0 && xv_ != 0; }
 
  private:
   double xx_ = 0, xv_ = 0, vv_ = 0;
@@ -43,9 +46,12 @@ std::optional<double> velocity_over_rate(const AxisRecord& record) {
     from = k, way = time = 0;
   }
   if (!ways.are_enough()) return {};
-  const double ratio = ways.ratio();
-  const double least = std::max(criteria::least_ratio_of_sensors, criteria::sure_ratio * ways.deviation());
-  return std::abs(ratio - 1) > least ? std::optional(ratio) : std::nullopt;
+  const auto [low, high] = std::minmax(ways.least(), ways.most());
+  const double difference =
+      std::max(criteria::least_ratio_of_sensors, criteria::sure_ratio * ways.deviation());
+  if (low - 1 > difference) return low;
+  if (1 - high > difference) return high;
+  return {};
 }
 
 }  // namespace loopwright::diagnosis

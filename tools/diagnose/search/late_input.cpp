@@ -6,8 +6,7 @@
 namespace loopwright::diagnosis {
 namespace {
 
-/// In -2 ln L: what the term must gain beyond all parameters.
-constexpr double least_gain_over_parameters = 25;
+using criteria::least_gain_over_parameters;
 constexpr size_t most_tried = 2;  // a delay and a lag
 
 /// The shapes of the past, which stand side by side in the catalogue.

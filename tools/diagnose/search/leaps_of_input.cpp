@@ -24,9 +24,13 @@ double misfit(Trials& trials, const Trials& other) {
   for (size_t t = 0; t < trials.list.size(); ++t) trials.list[t].usable = usable[t];
   return std::isfinite(value) ? value : impossible;
 }
+/// The steps within a sample that a wrong value asks for are not those of the record.
 double misfit(SiteFitter& fitter) {
   SiteHypothesis nominal;
-  return start_from_stated(fitter, ErrorsOf::predictions, {}, nominal) ? nominal.objective : impossible;
+  const int substeps = fitter.model().substeps();
+  const bool is_found = start_from_stated(fitter, ErrorsOf::predictions, {}, nominal).has_value();
+  fitter.model().set_substeps(substeps), fitter.filter().guess_scales(1);
+  return is_found ? nominal.objective : impossible;
 }
 
 /// Within one record: where another begins, every signal leaps.

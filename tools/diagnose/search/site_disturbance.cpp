@@ -8,22 +8,22 @@
 namespace loopwright::diagnosis {
 namespace {
 
-/// [in -2 ln L] Of a disturbance, which has two numbers.
-constexpr double least_gain_of_disturbance = 20;
+using criteria::least_gain_of_disturbance;
 
 /// Along the rows in which the filter has settled.
-double root_mean_square(const SitePass& pass, size_t state) {
-  const size_t first = pass.rows / criteria::settling_part;
-  double square = 0;
-  for (size_t k = first; k < pass.rows; ++k) square += squared(pass.filtered[k * pass.states + state]);
-  return std::sqrt(square / double(pass.rows - first));
+double root_mean_square(const SitePass& pass, size_t state, const std::vector<bool>& settles) {
+  double square = 0, count = 0;
+  for (size_t k = 0; k < pass.rows; ++k)
+    if (!settles[k]) square += squared(pass.filtered[k * pass.states + state]), count += 1;
+  return std::sqrt(square / count);
 }
 
 }  // namespace
 
 bool leaves_white_errors(SiteFitter& fitter, SiteHypothesis h) {
   SitePass pass;
-  return fitter.pass(h, false, pass) && portmanteau_of(pass) < criteria::most_portmanteau_of_any_diagram;
+  return fitter.pass(h, false, pass) &&
+         portmanteau_beside_counts(pass, fitter.model().record()) < criteria::most_portmanteau_of_any_diagram;
 }
 
 SiteHypothesis with_disturbances(SiteFitter& fitter, SiteHypothesis h, size_t most) {
@@ -61,9 +61,10 @@ std::vector<Disturbance> disturbances_of(SiteFitter& fitter, SiteHypothesis h) {
   std::vector<Disturbance> list;
   SitePass pass;
   if (h.noise.slow.empty() || h.noise.is_of_simulation || !fitter.pass(h, true, pass)) return list;
+  const std::vector<bool> settles = fitter.model().record().settling_rows();
   for (size_t j = 0; j < h.noise.slow.size(); ++j) {
     const SlowNoise& slow = h.noise.slow[j];
-    const double size = root_mean_square(pass, size_t(fitter.model().states()) + j);
+    const double size = root_mean_square(pass, size_t(fitter.model().states()) + j, settles);
     list.push_back({slow.site, size, size / size_at_site(fitter.model(), pass, slow.site), slow.time});
   }
   return list;

@@ -8,6 +8,16 @@
 namespace loopwright::diagnosis {
 namespace {
 
+/// [s] Of the longest record among the first rows.
+double longest_duration(const SignalRecord& record, size_t rows) {
+  double longest = 0, duration = 0;
+  for (size_t row = 0; row < rows; ++row) {
+    if (record.begins_at(row)) duration = 0;
+    longest = std::max(longest, duration += record.step(row));
+  }
+  return longest;
+}
+
 /// A parameter keeps its sign and its order of magnitude: beyond, the diagram is another one.
 constexpr double widest_factor = 50;
 /// Lengths of a Gauss-Newton step that are tried where a whole one does not help.
@@ -63,6 +73,7 @@ size_t size_of(const SiteHypothesis& h) { return fitted_numbers(h).size(); }
 SiteFitter::SiteFitter(SiteFilter& filter, size_t rows, std::function<bool()> is_interrupted)
     : filter_(filter),
       rows_(rows),
+      longest_slow_time_(criteria::longest_slow_part * longest_duration(filter.model().record(), rows)),
       is_interrupted_(std::move(is_interrupted)),
       errors_(rows * filter.model().record().outputs.size()) {}
 

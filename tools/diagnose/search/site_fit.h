@@ -43,6 +43,10 @@ class SiteFitter {
  public:
   /// Over the first `rows` rows of the record.
   SiteFitter(SiteFilter& filter, size_t rows, std::function<bool()> is_interrupted);
+  /// [s] Of slow noise: what is faster is white noise, what is slower takes out what offsets and drifts would
+  /// explain.
+  double shortest_slow_time() const { return 2 * filter_.model().record().sample_time; }
+  double longest_slow_time() const { return longest_slow_time_; }
 
   SiteFilter& filter() { return filter_; }
   SiteModel& model() { return filter_.model(); }
@@ -82,14 +86,11 @@ class SiteFitter {
   void shorten_steps(SiteHypothesis& hypothesis);
   SiteNoise best_noise(const SitePass& pass, const SiteNoise& from) const;
   std::optional<SiteNoise> evened(const SiteNoise& noise) const;
-  /// [s] Of slow noise: what is faster is white noise, what is slower takes out what offsets and drifts would
-  /// explain.
-  double shortest_slow_time() const { return 2 * filter_.model().record().sample_time; }
-  double longest_slow_time() const { return 0.1 * double(rows_) * filter_.model().record().sample_time; }
   void keep_within_limits(SiteHypothesis& hypothesis, const FittedNumber& number, double before) const;
 
   SiteFilter& filter_;
   const size_t rows_;
+  const double longest_slow_time_;
   std::function<bool()> is_interrupted_;
   std::span<const TermShape> shapes_ = named_shapes();
   SitePass pass_;

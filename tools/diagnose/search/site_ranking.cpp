@@ -9,14 +9,8 @@
 namespace loopwright::diagnosis {
 namespace {
 
-/// [of its energy] What must be left of a column after projection.
-constexpr double least_energy = 2e-3;
-/// In -2 ln L: what the second of two terms that are ranked together must gain.
-constexpr double least_gain_of_second = 40;
-/// [of a delay's gain] An input that is held gains as much as the delay, which then is none.
-constexpr double share_of_held = 0.9;
-/// Nats, beside those of the shape.
-constexpr double of_far = 6, of_derived = 3, of_difference = 2, of_indirect_sum = 3, of_sensor = 3;
+using criteria::least_energy, criteria::least_gain_of_second, criteria::share_of_held, criteria::of_far;
+using criteria::of_derived, criteria::of_difference, criteria::of_indirect_sum, criteria::of_sensor;
 
 /// Far from its site a variable enters by plain laws only, and so does a recorded input or the output of a
 /// filter into its own distortion: others would resemble saturation and dead zone.

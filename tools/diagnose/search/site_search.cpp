@@ -21,11 +21,9 @@
 namespace loopwright::diagnosis {
 namespace {
 
-constexpr size_t most_terms = 5;
 constexpr int most_changes = 3;  // of an answer whose parameters are decided
-/// In the criterion: what an added term and an exchange must gain, and within what a rival is declared.
-constexpr double least_improvement = 10, least_exchange = 3, rival_within = 10;
 using criteria::least_gain_of_unknown, criteria::least_gain_of_unknown_per_reading;
+using criteria::least_improvement, criteria::least_exchange, criteria::rival_within, criteria::most_terms;
 
 class SiteSearch : JudgedFits {
  public:

@@ -40,9 +40,21 @@ double portmanteau_of(const SitePass& pass, size_t output, size_t rows) {
   return double(e.size()) * sum;
 }
 
-double portmanteau_of(const SitePass& pass) {
+double most_error_of_counts(const RecordedOutput& output) {
+  return criteria::most_error_of_counts * output.resolution / std::sqrt(12);
+}
+
+double portmanteau_beside_counts(const SitePass& pass, const SignalRecord& record) {
+  const std::vector<bool> settles = record.settling_rows();
   double worst = 0;
-  for (size_t j = 0; j < pass.outputs; ++j) worst = std::max(worst, portmanteau_of(pass, j, pass.rows));
+  for (size_t j = 0; j < pass.outputs; ++j) {
+    double squares = 0, count = 0;
+    for (size_t row = 0; row < pass.rows; ++row)
+      if (const double e = pass.error[row * pass.outputs + j]; !std::isnan(e) && !settles[row])
+        squares += e * e, count += 1;
+    const double most = most_error_of_counts(record.outputs[j]);
+    if (!(squares < most * most * count)) worst = std::max(worst, portmanteau_of(pass, j, pass.rows));
+  }
   return worst;
 }
 

@@ -1,6 +1,7 @@
 /// An effect stands only if the diagram simulates no worse with it.
 #pragma once
 #include <functional>
+#include "tools/diagnose/criteria.h"
 #include "tools/diagnose/verdict/free_run.h"
 #include "tools/diagnose/verdict/staircase.h"
 
@@ -14,6 +15,12 @@ struct Acceptance {
   bool is_worse = false;    ///< with all effects, than the nominal diagram
   bool diverges = false;    ///< the diagram with all of them, unless a load moves by itself
   std::string why_not_run;  ///< empty: it was run
+
+  /// Too few to tell whether any effect makes them worse.
+  bool has_few_simulations() const {
+    return !runs.empty() && !runs.back().diverged && staircase.steps.size() > 1 &&
+           double(runs.back().squares.size()) < criteria::least_windows;
+  }
 };
 
 /// What a set of effects leaves, root mean squares: of the free simulation, and of the balance of forces in

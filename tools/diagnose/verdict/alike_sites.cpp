@@ -79,14 +79,16 @@ std::vector<std::string> alike_sites(SiteFitter& fitter, SiteHypothesis h) {
     }
     columns.emplace_back(s, column.normalized());
   }
-  while (!columns.empty()) {  // those that look like the first of them
-    const Eigen::VectorXd first = columns.front().second;
+  while (!columns.empty()) {
     std::vector<std::string> alike;
-    std::erase_if(columns, [&](const auto& column) {
-      if (!(std::abs(first.dot(column.second)) > criteria::alike_responses)) return false;
-      alike.push_back("what acts at " + sites[column.first].name);
-      return true;
-    });
+    std::vector<Eigen::VectorXd> group{columns.front().second};
+    for (size_t next = 0; next < group.size(); ++next)  // those that look like one of the group belong to it
+      std::erase_if(columns, [&](const auto& column) {
+        if (!(std::abs(group[next].dot(column.second)) > criteria::alike_responses)) return false;
+        alike.push_back("what acts at " + sites[column.first].name);
+        if (column.second != group.front()) group.push_back(column.second);
+        return true;
+      });
     if (alike.size() > 1)
       sentences.push_back(loopwright::joined(alike, " and ") + " look alike in what is measured");
   }

@@ -31,6 +31,14 @@ class Course {
   const std::vector<bool> settles_;
 };
 
+/// A function of any signal contains a constant: the mean of a disturbance follows none.
+std::vector<double> about_its_mean(std::vector<double> values) {
+  double mean = 0;
+  for (const double v : values) mean += v / double(values.size());
+  for (double& v : values) v -= mean;
+  return values;
+}
+
 }  // namespace
 
 std::optional<FollowedSignal> followed_signal(SiteFitter& fitter, SiteHypothesis h, size_t disturbance) {
@@ -39,7 +47,7 @@ std::optional<FollowedSignal> followed_signal(SiteFitter& fitter, SiteHypothesis
   const SiteModel& model = fitter.model();
   const int site = h.noise.slow[disturbance].site;
   const Course course(model, pass);
-  const std::vector<double> slow = course.of_state(size_t(model.states()) + disturbance);
+  const std::vector<double> slow = about_its_mean(course.of_state(size_t(model.states()) + disturbance));
   const size_t stretch = slow.size() / criteria::folds + 1;
   FollowedSignal best{"", criteria::least_share_of_disturbance};
   const auto compare = [&](std::span<const double> signal, std::span<const double> side, std::string name) {

@@ -175,10 +175,17 @@ int steps_for(const std::vector<Member>& members, double sample_time) {
   return int(whole_between<size_t>(std::ceil(steps), 1, criteria::most_steps_a_sample));
 }
 
-size_t rows_of_window(AxisModel& model, const Noise& noise) {
+/// Rows that are run freely: those held out, where there are any.
+size_t rows_run_freely(const Trial& trial) {
+  const size_t rows = trial.model->record().rows();
+  return trial.held_out_from < rows ? rows - trial.held_out_from : rows;
+}
+
+size_t rows_of_window(const Trial& trial, AxisModel& model, const Noise& noise) {
   const LinearAxis axis = model.linearize();
   const double constant = correction_time(axis, gains_of(axis, noise, model.nominal_inertia())),
-               affordable = double(model.record().rows()) / (2 * criteria::plenty_of_windows);
+               affordable = std::min(double(model.record().rows()) / (2 * criteria::plenty_of_windows),
+                                     double(rows_run_freely(trial)) / (2 * (criteria::least_windows + 1)));
   return whole_count(
       std::ceil(std::max(criteria::least_horizon_rows, std::min(criteria::horizon * constant, affordable))));
 }
@@ -214,7 +221,7 @@ FreeRun run_freely(const std::vector<Member>& members, const Improver& improver,
     if (only_held_out && !holds_out(trials.list[t])) continue;
     if (trials.interrupt && *trials.interrupt) throw Interrupted{};
     AxisModel& model = *trials.list[t].model;
-    const size_t length = rows_of_window(model, noise);
+    const size_t length = rows_of_window(trials.list[t], model, noise);
     result.horizon_s = std::max(result.horizon_s, double(length) * model.record().sample_time);
     FreeAxis axis(diagram, *improver.experiments()[t], model, load,
                   steps_for(members, model.record().sample_time));

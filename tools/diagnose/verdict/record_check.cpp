@@ -8,6 +8,7 @@
 #include "tools/diagnose/record/two_sensors.h"
 #include "tools/diagnose/search/leaps_of_input.h"
 #include "tools/diagnose/verdict/verdict.h"
+#include "tools/diagnose/wording.h"
 
 namespace loopwright::diagnosis {
 
@@ -40,6 +41,18 @@ RecordFinding inputs_are_not_felt(size_t count) {
                             "them",
                             count),
           "what the neighbours say was taken instead"};
+}
+
+RecordFinding angle_leaps(std::string_view angle, size_t count) {
+  return {fmt::format("the measured {} leaps by a turn in {} row{}", angle, count, count == 1 ? "" : "s"),
+          "the sensor begins anew at each turn: add up its turns in the column", true};
+}
+
+RecordFinding too_few_simulations(const FreeRun& run) {
+  return {fmt::format("the rows that are simulated hold {} stretches of {}, each without a missing row",
+                      run.squares.size(), shown(run.horizon_s, "s")),
+          "whether the diagram simulates better with what was found is not known: hold out more, or record "
+          "longer"};
 }
 
 RecordFinding ended_at_limit(double most_work) {
@@ -100,6 +113,37 @@ std::vector<RecordFinding> faults_in_balance(const Trials& trials,
   return findings;
 }
 
+/// "the measured angle of third.experiment.json leaps": of several records each has its name.
+std::string of_record(const Trials& trials, const Trial& trial) {
+  return trials.list.size() > 1 ? " of " + trial.model->record().path : std::string();
+}
+
+/// What is wrong with the sensors of one record.
+std::vector<RecordFinding> faults_of_sensors(const Trials& trials, const Trial& trial) {
+  const AxisRecord& record = trial.model->record();
+  const std::string of = of_record(trials, trial);
+  std::vector<RecordFinding> findings;
+  if (!record.left_out.empty())
+    findings.push_back({fmt::format("the {}{} is read less often than what else is measured of the axis",
+                                    record.left_out, of),
+                        "it was left out: readings of two rates do not count together here"});
+  if (const MeasuredPort* position = record.find("position");
+      position && !record.is_map && is_noise_alone(position->value))
+    findings.push_back(
+        {"the measured position" + of + " changes from row to row as much as over the whole record",
+         "the sensor shows noise and no motion, and no effect can be named: see that it is "
+         "connected, and that its column belongs to this record",
+         true});
+  if (record.leaps_by_a_turn > 0) findings.push_back(angle_leaps("angle" + of, record.leaps_by_a_turn));
+  if (const std::optional<double> ratio = velocity_over_rate(record))
+    findings.push_back(
+        {fmt::format("the measured velocity{} is {:.4g} times the rate of the measured position", of, *ratio),
+         "one of the two has another scale or unit than is stated, or is filtered: what is "
+         "named may stand for that",
+         true});
+  return findings;
+}
+
 }  // namespace
 
 std::vector<RecordFinding> look_at_records(const Trials& trials,
@@ -110,17 +154,7 @@ std::vector<RecordFinding> look_at_records(const Trials& trials,
   if (trials.list.front().model->record().leaps != InputLeaps::felt)
     findings.push_back(inputs_are_not_felt(input_leaps(trials)));
   for (const Trial& trial : trials.list)
-    if (const std::string& role = trial.model->record().left_out; !role.empty())
-      findings.push_back(
-          {fmt::format("the {} is read less often than what else is measured of the axis", role),
-           "it was left out: readings of two rates do not count together here"});
-  for (const Trial& trial : trials.list)
-    if (const MeasuredPort* position = trial.model->record().find("position");
-        position && !trial.model->record().is_map && is_noise_alone(position->value))
-      findings.push_back({"the measured position changes from row to row as much as over the whole record",
-                          "the sensor shows noise and no motion, and no effect can be named: see that it is "
-                          "connected, and that its column belongs to this record",
-                          true});
+    std::ranges::move(faults_of_sensors(trials, trial), std::back_inserter(findings));
   const auto is_driven = [](const Trial& trial) {
     return trial.model->record().is_map || std::ranges::any_of(trial.input, [](double u) { return u != 0; });
   };
@@ -129,20 +163,6 @@ std::vector<RecordFinding> look_at_records(const Trials& trials,
                         "how large any force is cannot be known, and nothing is said about the machine: see "
                         "that its column is the right one, or begin the record with a push",
                         true});
-  for (const Trial& trial : trials.list)
-    if (const MeasuredPort* angle = trial.model->record().find("position");
-        angle && angle->unit == "rad" && !trial.model->record().is_map)
-      if (const size_t count = leaps_by_a_turn(angle->value); count > 0)
-        findings.push_back(
-            {fmt::format("the measured angle leaps by a turn in {} row{}", count, count == 1 ? "" : "s"),
-             "the sensor begins anew at each turn: add up its turns in the column", true});
-  for (const Trial& trial : trials.list)
-    if (const std::optional<double> ratio = velocity_over_rate(trial.model->record()))
-      findings.push_back(
-          {fmt::format("the measured velocity is {:.4g} times the rate of the measured position", *ratio),
-           "one of the two has another scale or unit than is stated, or is filtered: what is "
-           "named may stand for that",
-           true});
   if (balances_forces(trials, inverse))
     std::ranges::move(faults_in_balance(trials, inverse), std::back_inserter(findings));
   else

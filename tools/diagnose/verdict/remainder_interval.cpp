@@ -43,9 +43,12 @@ std::optional<RemainderInterval> interval_of_remainder(const Trials& trials,
   }
   if (squares.empty()) return {};
   const auto [from, to] = shortest_stretch(squares, criteria::most_of_remainder * sum_of(squares));
-  if (double(to - from) > criteria::short_part_of_record * double(squares.size())) return {};
   const AxisRecord& read = trials.list[record].model->record();
-  const auto time = [&](size_t row) { return read.start + double(row) * read.sample_time; };
+  const std::vector<double> place = places_of_rows(read);
+  const auto time = [&](size_t row) {
+    return read.start + place[std::min(row, place.size() - 1)] * read.sample_time;
+  };
+  if (time(to) - time(from) > criteria::short_part_of_record * (time(squares.size()) - read.start)) return {};
   return RemainderInterval{record + 1, time(from), time(to)};
 }
 

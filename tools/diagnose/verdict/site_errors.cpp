@@ -38,7 +38,7 @@ void use_simulation(SiteFitter& fitter, const SiteHypothesis& h, SiteErrors& err
 /// Whether predictions and simulations miss the output by no more than its counts do. Those of a slow signal
 /// follow each other, and are no sign of anything missing.
 bool are_errors_of_counts(const SiteErrors& errors, const RecordedOutput& output, size_t j) {
-  const double most = criteria::most_error_of_counts * output.resolution / std::sqrt(12);
+  const double most = most_error_of_counts(output);
   return !errors.diverges && errors.predicted[j] < most && !(errors.held_out[j] > most) &&
          errors.simulated[j] < most;
 }
@@ -60,9 +60,10 @@ SiteErrors errors_of(SiteFitter& fitter, SiteHypothesis h) {
     for (size_t k = 0; k < rows; ++k) {
       const size_t at = k * pass.outputs + j;
       const double square = pass.error[at] * pass.error[at];
-      (k < fitted ? predicted : held_out).add(square);
       (k < fitted ? all : all_held_out).add(square / pass.variance[at]);
-      if (!std::isnan(square) && !settles[k]) noise.add(pass.variance[at]);
+      if (std::isnan(square) || settles[k]) continue;
+      (k < fitted ? predicted : held_out).add(square);
+      noise.add(pass.variance[at]);
     }
     errors.predicted.push_back(predicted.root()), errors.held_out.push_back(held_out.root());
     errors.noise.push_back(noise.root());

@@ -38,10 +38,11 @@ bool question_inputs(SiteFitter& fitter, const SiteHypothesis& found, std::vecto
     const RecordedInput& input = model.record().inputs[i];
     const BetweenRows stated = input.between_rows;
     BetweenRows best = stated;
+    const double as_stated = objective_with(fitter, found, i, stated);  // fitted as long as the others
     double gain = 0;
     for (const BetweenRows other : {BetweenRows::hold, BetweenRows::linear, BetweenRows::band_limited}) {
       if (other == stated) continue;
-      const double gained = found.objective - objective_with(fitter, found, i, other);
+      const double gained = as_stated - objective_with(fitter, found, i, other);
       if (gained > gain) gain = gained, best = other;
     }
     model.suppose_between_rows(i, stated);

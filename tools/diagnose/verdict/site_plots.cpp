@@ -19,11 +19,19 @@ void add_whiteness(SiteFitter& fitter, SiteHypothesis nominal, SiteHypothesis fo
   SitePass before, after;
   nominal.noise = found.noise;
   if (!fitter.pass(nominal, false, before) || !fitter.pass(found, false, after)) return;
-  result.whiteness.before = correlations_of(before, 0, before.rows);
-  result.whiteness.after = correlations_of(after, 0, after.rows);
+  const SignalRecord& record = fitter.model().record();
+  size_t worst = 0;
+  for (size_t j = 1; j < after.outputs; ++j)
+    if (portmanteau_of(after, j, after.rows) > portmanteau_of(after, worst, after.rows)) worst = j;
+  result.whiteness.port = record.outputs[worst].port;
+  result.whiteness.before = correlations_of(before, worst, before.rows);
+  result.whiteness.after = correlations_of(after, worst, after.rows);
+  double readings = 0;
+  for (size_t row = 0; row < after.rows; ++row)
+    readings += std::isfinite(after.error[row * after.outputs + worst]);
   for (size_t lag = 1; lag <= result.whiteness.after.size(); ++lag)
-    result.whiteness.lag_s.push_back(double(lag) * fitter.model().record().sample_time);
-  result.whiteness.most = 1.96 / std::sqrt(double(after.rows));
+    result.whiteness.lag_s.push_back(double(lag) * record.sample_time * double(after.rows) / readings);
+  result.whiteness.most = 1.96 / std::sqrt(readings);
 }
 
 /// Nodes at even distances over the range of a variable.

@@ -308,8 +308,9 @@ class Telling {
       const Site& site = model_.sites()[size_t(d.site)];
       result_.slow_disturbances.push_back({site.name, unit_text(site.unit), d.size, d.share, d.time});
       result_.findings.push_back(
-          {fmt::format("a slow disturbance at {}: {}, {:.1f} % of the signal, alike for {:.2g} s", site.name,
-                       shown(d.size, unit_text(site.unit)), 100 * d.share, d.time),
+          {fmt::format("a slow disturbance at {}: {}, {:.1f} % of the signal, alike for {:.2g} s{}",
+                       site.name, shown(d.size, unit_text(site.unit)), 100 * d.share, d.time,
+                       d.time < fitted_.longest_slow_time() ? "" : " or longer"),
            is_noise ? "it is taken for noise"
            : followed
                ? fmt::format("{:.0f} % of it follow {}: it stands for an effect that nothing here names",
@@ -322,14 +323,17 @@ class Telling {
 
   void judge() {
     const bool has_unknown = !result_.remainder_variables.empty();
-    const bool is_white = !errors_.diverges && !errors_.leaves_slow_error && are_disturbances_noise() &&
+    const bool are_noise = are_disturbances_noise();  // each of these tells what it finds
+    const bool is_white = !errors_.diverges && !errors_.leaves_slow_error && are_noise &&
                           errors_.portmanteau < criteria::most_portmanteau_of_any_diagram;
     const bool names = !result_.effects.empty() || !result_.moved_parameters.empty();
     const bool worse = names && simulates_worse(errors_, nominal_, result_.holds_out);
+    const bool is_untold = has_untold_terms(),
+               are_too_many = are_too_many_changes() || are_many_changes_in_vain(),
+               is_contradicted = has_contradicted_terms(), cancels = has_cancelling_names();
     const bool is_open =
         (names && search_.second_opinion && search_.second_opinion->is_open() && missed_by_far()) ||
-        has_untold_terms() || are_too_many_changes() || are_many_changes_in_vain() ||
-        has_contradicted_terms() || has_cancelling_names() || (names && is_input_questioned_);
+        is_untold || are_too_many || is_contradicted || cancels || (names && is_input_questioned_);
     const bool is_bent = names && misses_more_than_noise();
     const bool is_nothing = !names && (is_left_out_ || is_exact(errors_, model_.record()));
     const bool misses_held_out =

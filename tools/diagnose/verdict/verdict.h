@@ -3,6 +3,7 @@
 #include "tools/diagnose/search/conclude.h"
 #include "tools/diagnose/diagnosis.h"
 #include "tools/diagnose/search/remaining_force.h"
+#include "tools/diagnose/verdict/free_run.h"
 #include "tools/effects/effect.h"
 
 namespace loopwright::diagnosis {
@@ -15,8 +16,13 @@ std::optional<RecordFinding> too_few_rows(const Trials& trials);
 /// Readings that are not those of their rows, and what was done about them: see loopwright::false_readings.
 RecordFinding readings_are_false(size_t count, std::string consequence);
 
+/// Fatal: the readings of an angle begin anew at each turn.
+RecordFinding angle_leaps(std::string_view angle, size_t count);
+
 /// The search used up its operations.
 RecordFinding ended_at_limit(double most_work);
+/// The rows that are simulated hold too few stretches of a horizon.
+RecordFinding too_few_simulations(const FreeRun& run);
 /// Noise was taken away from the recorded input: see noise_instead_of_late_input().
 /// Values of recorded inputs that were taken away because the machine does not feel them.
 RecordFinding inputs_are_not_felt(size_t count);
