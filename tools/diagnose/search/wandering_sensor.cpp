@@ -1,9 +1,11 @@
 #include "tools/diagnose/search/wandering_sensor.h"
+#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/noise_likelihood.h"
+#include "tools/diagnose/wording.h"
 
 namespace loopwright::diagnosis {
 namespace {
@@ -83,6 +85,14 @@ std::optional<WanderingSensor> wandering_sensor(Trials& trials, const Estimate& 
   const WanderingOffset offset = misfit.offset_at(best.data());
   return WanderingSensor{offset.size, offset.memory_samples * trials.list.front().model->record().sample_time,
                          least_misfit(trials, found) - misfit(best.data())};
+}
+
+std::string described(const Trials& trials, const WanderingSensor& sensor) {
+  const MeasuredPort& port = trials.list.front().model->record().measured.front();
+  return fmt::format(
+      "a {} sensor whose offset wanders by {} within {} explains the errors better: -2 ln L is {:.0f} "
+      "smaller",
+      port.role, shown(sensor.size, port.unit), shown(sensor.time_s, "s"), sensor.gain);
 }
 
 }  // namespace loopwright::diagnosis

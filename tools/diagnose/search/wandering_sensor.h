@@ -2,6 +2,7 @@
 /// by itself.
 #pragma once
 #include <optional>
+#include <string>
 #include "tools/diagnose/predict/wandering_offset.h"
 #include "tools/diagnose/search/maximum_likelihood.h"
 
@@ -16,5 +17,8 @@ struct WanderingSensor {
 /// The most likely one, beside those members of the estimate that are no load of their own. Empty: the
 /// records are maps of balances, or cannot be predicted without the load.
 std::optional<WanderingSensor> wandering_sensor(Trials& trials, const Estimate& found);
+
+/// "a position sensor whose offset wanders by 60 µm within 2 s explains the errors better: …".
+std::string described(const Trials& trials, const WanderingSensor& sensor);
 
 }  // namespace loopwright::diagnosis

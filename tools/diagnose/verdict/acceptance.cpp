@@ -6,6 +6,7 @@
 #include <utility>
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/doubt.h"
+#include "tools/diagnose/search/wandering_sensor.h"
 #include "tools/diagnose/wording.h"
 
 namespace loopwright::diagnosis {
@@ -79,7 +80,7 @@ class Judge {
       for (size_t m : state.staircase.added[i])
         if (state.conclusion.weights[m].certainty < 1 && !is_worse(state.runs[i], state.runs[i - 1]))
           return Refusal{m, "its interval contains zero, and the diagram simulates no worse without it"};
-    return {};
+    return load_of_wandering_sensor(state);
   }
 
   bool is_worse_than_nominal(const Acceptance& state) {
@@ -90,6 +91,14 @@ class Judge {
   }
 
  private:
+  std::optional<Refusal> load_of_wandering_sensor(const Acceptance& state) {
+    const Estimate& found = state.conclusion.estimate;
+    const auto load = std::ranges::find_if(found.members, is_own_load);
+    if (load == found.members.end()) return {};
+    const auto sensor = wandering_sensor(trials_, found);
+    if (!sensor || sensor->gain <= criteria::least_gain_of_offset) return {};
+    return Refusal{size_t(load - found.members.begin()), described(trials_, *sensor)};
+  }
   bool is_late(const Acceptance& state, size_t member) const {
     return is_late_in_slow_balance(trials_, state.conclusion.estimate.members, member);
   }

@@ -8,7 +8,6 @@
 #include "tools/diagnose/search/doubt.h"
 #include "tools/diagnose/search/wandering_sensor.h"
 #include "tools/diagnose/verdict/remainder_interval.h"
-#include "tools/diagnose/wording.h"
 
 namespace loopwright::diagnosis {
 
@@ -110,22 +109,6 @@ bool is_input_taken_away(const Trials& trials, const std::vector<Fitted>& fitted
   return left < std::pow(criteria::least_input_left, 2) * recorded;
 }
 
-/// Whether an offset of the sensor that wanders explains the errors better than the loads that are named, or
-/// than nothing, in words; empty: no.
-std::string why_sensor_wanders(Trials& trials, const Estimate& e) {
-  const auto offset = wandering_sensor(trials, e);
-  const bool has_load = std::ranges::any_of(e.members, is_own_load);
-  if (!offset ||
-      offset->gain <= (has_load ? criteria::least_gain_of_offset : criteria::least_gain_of_offset_alone))
-    return {};
-  const MeasuredPort& port = trials.list.front().model->record().measured.front();
-  return fmt::format(
-      "a {} sensor whose offset wanders by {} within {} explains the errors better{}: -2 ln L is {:.0f} "
-      "smaller",
-      port.role, shown(offset->size, port.unit), shown(offset->time_s, "s"),
-      has_load ? " than a load that moves by itself" : "", offset->gain);
-}
-
 }  // namespace
 
 void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, const Noise& tight,
@@ -167,9 +150,10 @@ void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, c
       diagnosis.contradictions.push_back("the counts of the sensor are too coarse to show how the load of " +
                                          name + " moves: its parameters are not certain");
   }
-  if (is_not_white || std::ranges::any_of(e.members, is_own_load))
-    if (std::string why = why_sensor_wanders(trials, e); !why.empty())
-      diagnosis.contradictions.push_back(std::move(why));
+  if (is_not_white && std::ranges::none_of(e.members, is_own_load))
+    if (const auto sensor = wandering_sensor(trials, e);
+        sensor && sensor->gain > criteria::least_gain_of_offset_alone)
+      diagnosis.contradictions.push_back(described(trials, *sensor));
   if (conclusion.comes_in_bursts)
     diagnosis.contradictions.push_back(
         "large errors keep together in time: something happens now and then that is not explained, as the "
