@@ -94,6 +94,9 @@ constexpr double next_to_no_slow_noise = 0.01;
 constexpr double most_lost_as_white = 25;
 /// [factor] The likelihood looks for each noise within this of its start.
 constexpr double noise_reach = 30;
+/// [rows] In a pitch at the top speed: what repeats sooner leaps over the rows, and is noise. Slower parts of
+/// the motion show it better.
+constexpr double rows_of_shortest_pitch = 1.5;
 /// [cosine] Input and force push the states in the same direction: noise of one is noise of the other.
 constexpr double same_push = 0.99;
 /// [greatest position] Numbers of a record have some nine digits.
@@ -123,7 +126,7 @@ constexpr double least_gain_of_offset_alone = 50;
 constexpr size_t portmanteau_lags = 40;
 constexpr double portmanteau_lag_s = 1e-3;  ///< errors that are closer are added up first
 /// Above it the errors are not white. Counts at a steady speed give up to 170 if no resolution is stated.
-constexpr double most_portmanteau = 300;
+constexpr double most_portmanteau = 200;
 /// The same where nothing is named and the counts are computed from the resolution that is stated, and their
 /// part is taken off: beside noise of the force clean records stay below 130. Without such noise they reach
 /// 171, and small errors of the law of a large effect give 206.
@@ -220,6 +223,9 @@ constexpr double other_shape = 1.5;
 constexpr double least_step_gain = 0.01;
 /// [ln(mean square)] Two models that differ less have the same motion.
 constexpr double same_motion = 0.01;
+/// [twice the log-likelihood] By which a load on a spring must explain more along the motion that it predicts
+/// itself: less are other roundings of the same.
+constexpr double least_gain_of_own_motion = 1;
 /// [mean square of the fitted rows] The held-out rows show something else.
 constexpr double most_held_out = 1.5;
 /// [range, in logarithms; range] Of a parameter, next to its ends: a fit that is pressed against the end of a
@@ -230,6 +236,12 @@ constexpr double sure = 0.9;
 
 /// [turns] That an angle moves within a row: more may be a turn that its sensor does not count.
 constexpr double most_way_within_row = 0.25;
+
+/// [deviation from 1] Two factors that differ by less are one, or by less than this within their intervals.
+constexpr double same_factor = 0.03, vague_factor = 0.2;
+/// [rms of the forces of the diagram] That mass and damping do not need: less is the error of the smoothed
+/// motion.
+constexpr double least_other_force = 0.03;
 
 // Two sensors of one axis: see record/two_sensors.h.
 

@@ -12,6 +12,7 @@
 #include "tools/diagnose/search/noisy_input.h"
 #include "tools/diagnose/search/remaining_force.h"
 #include "tools/diagnose/verdict/acceptance.h"
+#include "tools/diagnose/verdict/common_factor.h"
 #include "tools/diagnose/verdict/found_parameters.h"
 #include "tools/diagnose/verdict/improve.h"
 #include "tools/diagnose/verdict/plots.h"
@@ -338,8 +339,12 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
   if (!accepted.runs.empty())
     result.simulation_horizon_s = accepted.runs.back().horizon_s,
     result.simulation_diverged = accepted.diverges, result.simulation_is_worse = accepted.is_worse;
+  const double white = accepted.conclusion.estimate.noise.white;
+  if (white > criteria::loud_noise * trials.force_rms && !trials.has_map())
+    result.findings.push_back(noise_is_loud(white / trials.force_rms, shortest_pitch(sizes), units));
   if (accepted.has_few_simulations()) result.findings.push_back(too_few_simulations(accepted.runs.back()));
   tell_effects(conclusion, staircase, catalogue, units, result);
+  if (!trials.has_map()) tell_common_factor(trials, inverse, result);
   tell_errors(trials, conclusion, inquiry, result);
   trials.run_along(Trials::Rows::all);
   judge(trials, conclusion, inquiry.motion_of_all_rows(), search_noise(trials), inverse, result);

@@ -185,6 +185,18 @@ TEST(Acceptance, ALoadOnASpringIsSimulatedFromWhereTheMeasuredMotionLedIt) {
   EXPECT_LT(d.steps.back().simulation_rmse, 0.1 * d.steps.front().simulation_rmse) << to_text(d);
 }
 
+/// Four rows a pitch at the top speed. What the nominal diagram leaves is white, and as loud as the noise of
+/// a bad amplifier.
+TEST(Acceptance, AFinePitchIsFoundInWhatLooksLikeNoise) {
+  HiddenAxis axis;
+  Physics truth = axis.nominal();
+  truth.cogging = {0.3, 0.0016, 0.3};
+  const Diagnosis d = diagnose(axis.diagram(), {axis.record("fine", truth, there_and_back(0.2, 0.4))});
+  ASSERT_THAT(names(d), ElementsAre("cogging")) << to_text(d);
+  const auto pitch = std::ranges::find(d.effects[0].parameters, "pitch", &DiagnosedParameter::name);
+  EXPECT_NEAR(pitch->value, 0.0016, 2e-6);
+}
+
 /// Cogging 24 times a turn is 24 times a turn, although the record alone says 23.97 or 24.03.
 TEST(Acceptance, PitchesOfARotaryAxisAreWholePartsOfATurn) {
   HiddenMachine machine;

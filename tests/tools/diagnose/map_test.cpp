@@ -81,7 +81,7 @@ TEST(Map, NothingIsMissingWhereOnlyNoiseHolds) {
 
 /// The second map is read and balanced, but nothing of it is fitted.
 TEST(Map, AnotherMapMayBeHeldOutAsAWhole) {
-  const HeldAxis axis([](double x, double direction) { return cogging(x) + 0.05 * direction; });
+  HeldAxis axis([](double x, double direction) { return cogging(x) + 0.05 * direction; });
   std::string rows = "t,F,x\n";
   for (int k = 0; k < 1199; ++k) {
     const double direction = k < 600 ? 1 : -1, at = step * (k < 600 ? k : 1198 - k);

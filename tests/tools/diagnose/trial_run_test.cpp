@@ -21,8 +21,8 @@ class TrialRun : public testing::Test {
     Problems problems;
     const auto experiment = load_experiment(files.experiment(), problems);
     Diagnosis result;
-    if (!diagnosis::is_usable(improved, nominal, {experiment}, {}, result))
-      EXPECT_EQ(result.findings.size(), 1u);
+    const bool usable = diagnosis::is_usable(improved, nominal, {experiment}, {}, result);
+    EXPECT_EQ(result.findings.size(), usable ? 0u : 1u);
     const auto why = diagnosis::why_not_run(improved, nominal, {experiment}, {});
     EXPECT_EQ(why.has_value(), !result.findings.empty());
     return why;

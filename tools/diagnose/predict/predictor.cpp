@@ -1,6 +1,7 @@
 #include "tools/diagnose/predict/predictor.h"
 #include "tools/diagnose/predict/flying_load.h"
 #include "tools/diagnose/predict/linear_load.h"
+#include "tools/diagnose/criteria.h"
 #include "tools/diagnose/predict/sizes.h"
 #include <algorithm>
 #include <array>
@@ -78,6 +79,44 @@ double correction_time(const LinearAxis& axis, const Gains& gains) {
 
 namespace {
 
+/// Value and slope (per sample time) at the first of some numbers, by the straight line through them or, of
+/// five and more, by the parabola (least squares). `duration`: from each to the next; empty: 1.
+std::pair<double, double> begin_of(const std::vector<double>& numbers, const std::vector<double>& duration) {
+  const Eigen::Index degree = numbers.size() < 5 ? 1 : 2;
+  Eigen::Matrix3d G = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d b = Eigen::Vector3d::Zero();
+  double at = 0;
+  for (size_t k = 0; k < numbers.size(); ++k) {
+    const Eigen::Vector3d powers(1, at, at * at);
+    G += powers * powers.transpose(), b += numbers[k] * powers;
+    at += duration.empty() ? 1 : duration[k];
+  }
+  const Eigen::VectorXd c = G.topLeftCorner(degree + 1, degree + 1).ldlt().solve(b.head(degree + 1));
+  return {c[0], c[1]};
+}
+
+/// The speed at the first row: what the model, begun without any, misses within the first time constant of
+/// the filter grows with it. The difference of two readings has the noise of both and is that of the middle
+/// between them; a load that a wrong speed moves swings on for as long as its damping lets it.
+double speed_at_start(AxisModel& model, const Drives& drives, const Pace& pace) {
+  const AxisRecord& record = model.record();
+  const size_t constant = size_t(double(pace.samples_to_correct) / criteria::correction),
+               rows = std::min(std::max<size_t>(constant, 2), drives.input.size());
+  const MeasuredPort* position = record.find("position");
+  const bool is_velocity = record.find("velocity") != nullptr;
+  const size_t port = is_velocity ? record.measured.size() - 1 : 0;  // the position comes first
+  model.start(position ? std::optional(position->value[0]) : std::nullopt, 0);
+  std::vector<double> missed;
+  for (size_t k = 0; k < rows; ++k) {
+    const double sensor = drives.sensor.empty() || is_velocity ? 0 : drives.sensor[k];
+    missed.push_back(record.measured[port].value[k] - model.measured(port) - sensor);
+    model.step(drives.input[k], -drives.force[k], record.duration.empty() ? 1 : record.duration[k]);
+  }
+  if (rows < 2) return is_velocity ? missed[0] : 0;
+  const auto [value, slope] = begin_of(missed, record.duration);
+  return is_velocity ? value : slope / record.sample_time;
+}
+
 /// By constant gains, or with a load that flies by its own.
 Prediction step_along(AxisModel& model, const LinearAxis& axis, const Gains* gains, FlyingLoad* flying,
                       const Drives& drives, const Pace& pace) {
@@ -96,10 +135,8 @@ Prediction step_along(AxisModel& model, const LinearAxis& axis, const Gains* gai
   if (!record.duration.empty()) path.duration = first_rows(record.duration, rows);
   const MeasuredPort* position = record.find("position");
   const MeasuredPort* velocity = record.find("velocity");
-  const auto& first = record.measured.front().value;
-  model.start(
-      position ? std::optional(position->value[0]) : std::nullopt,
-      velocity ? velocity->value[0] : (first[std::min<size_t>(rows - 1, 1)] - first[0]) / record.sample_time);
+  const double speed = speed_at_start(model, drives, pace);
+  model.start(position ? std::optional(position->value[0]) : std::nullopt, speed);
   double d = 0, passed = 0, left = 0;  // left: velocity error after the correction
   const bool follows_velocity = model.position_follows_velocity();
   int turning = 0;

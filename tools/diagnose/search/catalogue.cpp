@@ -206,11 +206,11 @@ Candidate candidate_of(const Effect& effect, std::shared_ptr<const EffectPlan> p
       continue;
     }
     candidate.is_periodic |= p.is_period;
-    if (p.is_period) {  // shorter ones fall between two samples
+    if (p.is_period) {
       const RecordSizes& sizes = compiled->plan->sizes;
       parameter.span = sizes.stroke;
       parameter.centre = 0.5 * (sizes.lowest_position + sizes.highest_position);
-      parameter.low = std::max(parameter.low, 4 * sizes.top_speed * sizes.sample_time);
+      parameter.low = std::max(parameter.low, shortest_pitch(sizes));
       parameter.high = std::max(parameter.high, 2 * parameter.low);
     }
     parameter.grid = grid_of(parameter, candidate.nonlinear.empty(), p.points);
@@ -292,8 +292,8 @@ RecordSizes sizes_of(const std::vector<std::shared_ptr<const Path>>& paths,
     const size_t half =
         std::max<size_t>(1, whole_count(std::round(criteria::acceleration_span_s / 2 / path.sample_time)));
     for (size_t k = half; k + half < path.samples(); k += std::max<size_t>(1, half / 4)) {
-      const double acceleration = std::abs(path.velocity[k + half] - path.velocity[k - half]) /
-                                  (2 * double(half) * path.sample_time);
+      const double acceleration =
+          std::abs(path.velocity[k + half] - path.velocity[k - half]) / (2 * double(half) * path.sample_time);
       sizes.top_acceleration = std::max(sizes.top_acceleration, acceleration);
       if (path.rests[k] || double(k - half) * path.sample_time < criteria::speed_span_s) continue;
       squared_inertial += std::pow(models[i]->nominal_inertia() * acceleration, 2), accelerations += 1;
@@ -320,6 +320,10 @@ RecordSizes sizes_of(const std::vector<std::shared_ptr<const Path>>& paths,
   if (sizes.force_level < criteria::least_driving_share * inertial) sizes.force_level = inertial;
   sizes.sample_time = paths.front()->sample_time;
   return sizes;
+}
+
+double shortest_pitch(const RecordSizes& sizes) {
+  return criteria::rows_of_shortest_pitch * sizes.top_speed * sizes.sample_time;
 }
 
 bool has_uneven_rows(const std::vector<std::shared_ptr<const Path>>& paths) {

@@ -34,6 +34,9 @@ std::string hidden_by_input_noise(const Effect& effect);
 /// record lacks; empty: it can.
 std::string hidden_by_controller(const Effect& effect);
 
+/// [position] What repeats sooner along these records is not looked for.
+double shortest_pitch(const RecordSizes& sizes);
+
 /// Effects that cannot be added, and effects whose numbers cannot be computed for these records, are left
 /// out. `rows_are_uneven`: see has_uneven_rows(). Throws InputError with every problem of the effect files.
 Catalogue make_catalogue(const std::vector<std::string>& folders, const MachineUnits& units,

@@ -5,7 +5,7 @@
 namespace loopwright::diagnosis {
 namespace {
 
-constexpr int iterations = 4;
+constexpr int iterations_in_flight = 4;
 /// A parameter of the contact that is farther from the usual one than by this factor is doubted.
 constexpr double far_from_usual = 1.5;
 
@@ -28,9 +28,9 @@ Estimate fitted_in_flight(Trials& trials, Estimate found) {
   if (flies == found.members.end()) return found;
   std::vector<Member> members = found.members;
   const bool was_far = begin_anew(members[size_t(flies - found.members.begin())]);
-  Estimate best = fit_members(trials, found.members, found.noise, found.motion, iterations);
+  Estimate best = fit_members(trials, found.members, found.noise, found.motion, iterations_in_flight);
   if (!was_far) return best;
-  Estimate other = fit_members(trials, std::move(members), found.noise, found.motion, iterations);
+  Estimate other = fit_members(trials, std::move(members), found.noise, found.motion, iterations_in_flight);
   return other.is_valid && (!best.is_valid || other.profile < best.profile) ? other : best;
 }
 

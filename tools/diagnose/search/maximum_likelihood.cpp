@@ -146,6 +146,22 @@ void take_own_motion(Trials& trials, Estimate& estimate, double far) {
     estimate.motion.profile = estimate.profile;
 }
 
+/// A load on a spring is moved along the motion that an estimate without it predicted. What was wrong there
+/// at the start of the record swings on in the load, and bends its frequency and its damping; with these the
+/// load's own motion explains less, until it is fitted along that.
+Estimate with_motion_of_its_loads(Trials& trials, Estimate estimate, int iterations) {
+  constexpr int most_rounds = 3;
+  const auto is_on_a_spring = [](const Fitted& f) { return f.axis.load_states > 0 && !f.flying; };
+  for (int round = 0; round < most_rounds && estimate.is_valid; ++round) {
+    if (!std::ranges::any_of(*estimate.fitted, is_on_a_spring)) break;
+    Estimate own = on_own_motion(trials, estimate);
+    own = fit_members(trials, own.members, estimate.noise, own.motion, iterations);
+    if (!own.is_valid || !(own.profile < estimate.profile - criteria::least_gain_of_own_motion)) break;
+    estimate = std::move(own);
+  }
+  return estimate;
+}
+
 }  // namespace
 
 Estimate on_own_motion(Trials& trials, Estimate estimate) {
@@ -183,6 +199,7 @@ Estimate with_own_noise(Trials& trials, Estimate estimate, int iterations) {
   for (int round = 0; round < rounds && estimate.is_valid; ++round) {
     const Noise noise = fit_noise_alone(trials, *estimate.fitted, estimate.noise, FreeNoise::all);
     estimate = fit_members(trials, estimate.members, noise, estimate.motion, iterations);
+    estimate = with_motion_of_its_loads(trials, std::move(estimate), iterations);
   }
   return estimate;
 }

@@ -27,7 +27,7 @@ bool over_level(Quantity site, Quantity s) {
   return s == position || s == other || (site == heat && s == temperature);
 }
 bool outflow(Quantity site, Quantity s) {
-  return (site == flow && s == position) || (site == other && (s == position || s == other));
+  return (site == flow || site == other) && (s == position || s == other);  // of a level, or of a pressure
 }
 bool nowhere(Quantity, Quantity) { return false; }
 bool warm(Quantity site, Quantity s) { return site == heat && s == temperature; }

@@ -1,6 +1,7 @@
 #include "tools/diagnose/search/site_size.h"
 #include <algorithm>
 #include <cmath>
+#include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/remembered_path.h"
 
 namespace loopwright::diagnosis {
@@ -48,6 +49,18 @@ double size_of_term(const SiteModel& model, const SitePass& pass, const SiteTerm
   return root_mean_square(pass, [&](const double* at) {
     return term.value(term.variable < 0 ? 0 : model.variables()[size_t(term.variable)].at(at));
   });
+}
+
+std::vector<size_t> terms_that_are_something(SiteFitter& fitter, SiteHypothesis h) {
+  std::vector<size_t> list;
+  SitePass pass;
+  const SiteModel& model = fitter.model();
+  const bool is_asked = !h.terms.empty() && !h.noise.is_of_simulation && fitter.pass(h, true, pass);
+  for (size_t t = 0; t < h.terms.size(); ++t)
+    if (!is_asked || !(size_of_term(model, pass, h.terms[t]) <
+                       criteria::least_share_of_site * size_at_site(model, pass, h.terms[t].site)))
+      list.push_back(t);
+  return list;
 }
 
 }  // namespace loopwright::diagnosis

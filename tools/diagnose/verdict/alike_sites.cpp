@@ -73,6 +73,12 @@ std::vector<std::string> alike_sites(SiteFitter& fitter, SiteHypothesis h) {
     if (sites[s].kind == Site::Kind::sensor) continue;
     Eigen::VectorXd column(Eigen::Index(pass.error.size()));
     fitter.filter().respond(pass, int(s), trial, trial, trial, {column.data(), pass.error.size()});
+    const auto is_site = [&](const RecordedOutput& output) { return output.port == sites[s].name; };
+    if (!(column.norm() > 0) && std::ranges::any_of(fitter.model().record().outputs, is_site)) {
+      sentences.push_back("what is added at " + sites[s].name +
+                          " is added to what is measured, with no state between: no law is looked for there");
+      continue;
+    }
     if (!(column.norm() > 0)) {
       sentences.push_back(fmt::format("nothing at {} shows in what is measured", sites[s].name));
       continue;

@@ -48,6 +48,14 @@ RecordFinding angle_leaps(std::string_view angle, size_t count) {
           "the sensor begins anew at each turn: add up its turns in the column", true};
 }
 
+RecordFinding noise_is_loud(double share_of_drive, double shortest_pitch, const MachineUnits& units) {
+  return {
+      fmt::format("white noise of the force is {:.0f} % of what drives", 100 * share_of_drive),
+      fmt::format("what repeats within {}, or changes from row to row, would look like it: move slower, or "
+                  "record faster",
+                  shown(shortest_pitch, units.position))};
+}
+
 RecordFinding too_few_simulations(const FreeRun& run) {
   return {fmt::format("the rows that are simulated hold {} stretches of {}, each without a missing row",
                       run.squares.size(), shown(run.horizon_s, "s")),

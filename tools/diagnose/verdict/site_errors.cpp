@@ -112,6 +112,20 @@ double explained_by_noise(const SiteErrors& errors, const SiteNoise& noise, size
                    criteria::most_noise_of_simulations * of_states);
 }
 
+bool simulates_without(SiteFitter& fitter, const SiteHypothesis& found, const std::vector<bool>& optional,
+                       const SiteErrors& with_all) {
+  SiteHypothesis needed = found;
+  for (size_t t = optional.size(); t-- > 0;)
+    if (optional[t]) needed = without(std::move(needed), t);
+  if (needed.terms.size() == found.terms.size() || with_all.diverges) return true;
+  const SiteErrors errors = errors_of(fitter, needed);
+  for (size_t j = 0; j < with_all.simulated.size(); ++j)
+    if (errors.diverges ||
+        errors.simulated[j] > criteria::worse_simulation_of_any_diagram * with_all.simulated[j])
+      return false;
+  return true;
+}
+
 bool simulates_worse(const SiteErrors& errors, const SiteErrors& nominal, bool holds_out) {
   if (errors.diverges || nominal.diverges) return errors.diverges;
   bool helps = !holds_out;

@@ -26,6 +26,10 @@ std::optional<size_t> missed_output(const SiteErrors& errors, const SiteNoise& n
 /// rms error of an output's simulation, which the noise of its sensor and of the states explains at most.
 double explained_by_noise(const SiteErrors& errors, const SiteNoise& noise, size_t output);
 
+/// Whether simulations without the optional terms, with all else as it was fitted beside them, are as good.
+bool simulates_without(SiteFitter& fitter, const SiteHypothesis& found, const std::vector<bool>& optional,
+                       const SiteErrors& with_all);
+
 /// Whether simulations contradict what one-step predictions say: one is worse than that of the diagram as it
 /// is, or neither a simulation nor, of held-out rows, a prediction is better.
 bool simulates_worse(const SiteErrors& errors, const SiteErrors& nominal, bool holds_out);

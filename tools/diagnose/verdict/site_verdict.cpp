@@ -41,6 +41,10 @@ class Telling {
     std::ranges::move(possible_products(model_, found_), std::back_inserter(result_.not_observable));
     std::vector<bool> optional(found_.terms.size()), none(found_.terms.size());
     for (size_t t = 0; t < optional.size(); ++t) optional[t] = result_.effects[t].is_optional;
+    if (!simulates_without(whole_, found_, optional, errors_)) {
+      optional = none;
+      for (DiagnosedEffect& effect : result_.effects) effect.is_optional = false;
+    }
     result_.additions = site_additions(model_, found_, optional);
     result_.all_additions = site_additions(model_, found_, none);
     is_input_questioned_ = question_inputs(fitted_, found_, result_.findings);
@@ -105,22 +109,12 @@ class Telling {
       result_.effects.push_back(std::move(effect));
     }
   }
-  /// Without noise every rest of the arithmetic is significant: what is far below the signal at its site is
-  /// no effect.
   void leave_out_what_is_nothing() {
-    for (size_t t = 0; t < found_.terms.size(); ++t) place_.push_back(t);
-    SitePass pass;
-    SiteHypothesis h = found_;
-    if (h.terms.empty() || h.noise.is_of_simulation || !fitted_.pass(h, true, pass)) return;
-    found_.terms.clear(), place_.clear();
-    for (size_t t = 0; t < h.terms.size(); ++t) {
-      const SiteTerm& term = h.terms[t];
-      if (size_of_term(model_, pass, term) <
-          criteria::least_share_of_site * size_at_site(model_, pass, term.site))
-        continue;
-      found_.terms.push_back(term), place_.push_back(t);
-    }
-    is_left_out_ = found_.terms.size() < h.terms.size();
+    place_ = terms_that_are_something(fitted_, found_);
+    is_left_out_ = place_.size() < found_.terms.size();
+    std::vector<SiteTerm> kept;
+    for (const size_t t : place_) kept.push_back(found_.terms[t]);
+    found_.terms = std::move(kept);
   }
 
   void tell_parameters() {

@@ -156,8 +156,8 @@ void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, c
       diagnosis.contradictions.push_back(described(trials, *sensor));
   if (conclusion.comes_in_bursts)
     diagnosis.contradictions.push_back(
-        "large errors keep together in time: something happens now and then that is not explained, as the "
-        "blows of a load that rattles");
+        "large errors keep together in time: something happens now and then that is not explained, as "
+        "pushes, the blows of a load that rattles, or one record of several that is unlike the others");
   if (is_noise_inflated(trials, e.members, diagnosis))
     diagnosis.contradictions.push_back(
         "the errors ask for more noise than the forces show: they are not alike over the record, so that "

@@ -21,6 +21,8 @@ RecordFinding angle_leaps(std::string_view angle, size_t count);
 
 /// The search used up its operations.
 RecordFinding ended_at_limit(double most_work);
+/// The noise of the force is loud, as long as nothing is found in it: what would look like it.
+RecordFinding noise_is_loud(double share_of_drive, double shortest_pitch, const MachineUnits& units);
 /// The rows that are simulated hold too few stretches of a horizon.
 RecordFinding too_few_simulations(const FreeRun& run);
 /// Noise was taken away from the recorded input: see noise_instead_of_late_input().
