@@ -97,6 +97,9 @@ constexpr double noise_reach = 30;
 /// [rows] In a pitch at the top speed: what repeats sooner leaps over the rows, and is noise. Slower parts of
 /// the motion show it better.
 constexpr double rows_of_shortest_pitch = 1.5;
+/// [shortest pitch] A pitch below, within four rows at the top speed, must matter: many of them fit any
+/// noise.
+constexpr double fine_pitch = 2.7;
 /// [cosine] Input and force push the states in the same direction: noise of one is noise of the other.
 constexpr double same_push = 0.99;
 /// [greatest position] Numbers of a record have some nine digits.
@@ -127,6 +130,8 @@ constexpr size_t portmanteau_lags = 40;
 constexpr double portmanteau_lag_s = 1e-3;  ///< errors that are closer are added up first
 /// Above it the errors are not white. Counts at a steady speed give up to 170 if no resolution is stated.
 constexpr double most_portmanteau = 200;
+/// The same while effects are looked for: small ones that are still to come color the errors.
+constexpr double most_portmanteau_of_search = 300;
 /// The same where nothing is named and the counts are computed from the resolution that is stated, and their
 /// part is taken off: beside noise of the force clean records stay below 130. Without such noise they reach
 /// 171, and small errors of the law of a large effect give 206.

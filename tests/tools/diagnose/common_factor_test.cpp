@@ -41,9 +41,9 @@ TEST(CommonFactor, AnInputOfAnotherUnitIsSuspected) {
   Physics truth = axis.nominal();
   truth.coulomb_n = 0.3;
   const Diagnosis d = diagnose(axis.diagram(), {axis.record("pounds", truth, motion())});
-  EXPECT_THAT(d.findings, finds("mass and damping are 0.22")) << to_text(d);
-  EXPECT_THAT(d.other_explanations,
-              Contains(Field(&OtherExplanation::effects, testing::ElementsAre("force_gain"))))
+  EXPECT_THAT(d.findings, finds("the input acts 4.4")) << to_text(d);
+  EXPECT_THAT(d.other_explanations, Contains(Field(&OtherExplanation::effects,
+                                                   testing::ElementsAre("inertia", "viscous_friction"))))
       << to_text(d);
 }
 

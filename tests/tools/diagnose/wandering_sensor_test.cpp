@@ -21,7 +21,8 @@ WanderingSensor found_with(const FlawedMachine& m) {
   const FlawedAxis axis(m);
   Motion motion;
   Trials trials = prepare(axis.diagram(), {axis.experiment()}, {}, motion);
-  const Estimate nominal = fit_members(trials, {}, trials.noise, motion, 0);
+  const Estimate nominal =
+      with_own_noise(trials, fit_members(trials, {}, search_noise(trials), motion, 0), 0);
   const auto found = wandering_sensor(trials, nominal);
   EXPECT_TRUE(found);
   return found.value_or(WanderingSensor{});
@@ -52,8 +53,8 @@ TEST(WanderingSensor, IsNoLoadThatExplains) {
 }
 /// The other way round: a load is none of a sensor.
 TEST(WanderingSensor, ALoadStaysALoad) {
-  FlawedMachine m = machine(0, 9);
-  m.load_mass = 0.15, m.load_hz = 25;
+  FlawedMachine m;
+  m.seed = 9, m.load_mass = 0.15, m.load_hz = 25;
   const FlawedAxis axis(m);
   const Diagnosis d = diagnose(axis.diagram(), {axis.experiment()});
   EXPECT_EQ(name_of(d.verdict), "explained") << to_text(d);

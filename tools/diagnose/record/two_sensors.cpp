@@ -46,7 +46,7 @@ std::optional<double> velocity_over_rate(const AxisRecord& record) {
     from = k, way = time = 0;
   }
   if (!ways.are_enough()) return {};
-  const auto [low, high] = std::minmax(ways.least(), ways.most());
+  const auto [low, high] = std::minmax({ways.least(), ways.most()});
   const double difference =
       std::max(criteria::least_ratio_of_sensors, criteria::sure_ratio * ways.deviation());
   if (low - 1 > difference) return low;

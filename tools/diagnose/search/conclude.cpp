@@ -23,7 +23,8 @@ using namespace criteria;
 /// errors' autocorrelation. A set that is worse by less cannot be excluded. Beyond the limit of white errors
 /// there is no bound.
 double unexplained(double portmanteau) {
-  return std::clamp(portmanteau - double(criteria::portmanteau_lags), 0.0, criteria::most_portmanteau);
+  return std::clamp(portmanteau - double(criteria::portmanteau_lags), 0.0,
+                    criteria::most_portmanteau_of_search);
 }
 
 /// Whether one candidate replaces the same member.

@@ -368,7 +368,8 @@ class Search {
   bool rest_is_noise() {
     const Noise louder = fit_noise_alone(trials_, *best_.fitted, noise_, FreeNoise::white_and_slow);
     Estimate trial = fit_members(trials_, best_.members, louder, best_.motion, 4);
-    if (!trial.is_valid || portmanteau(trials_, *trial.fitted) > criteria::most_portmanteau) return false;
+    if (!trial.is_valid || portmanteau(trials_, *trial.fitted) > criteria::most_portmanteau_of_search)
+      return false;
     noise_ = louder, take(std::move(trial));
     note("with louder noise");
     prune();

@@ -190,7 +190,7 @@ double material(const Trials& trials, const Estimate& estimate, const Weight& we
 std::vector<Weight> weigh_all(Trials& trials, Estimate& estimate) {
   work_out_covariance(trials, estimate);
   const double color = portmanteau(trials, *estimate.fitted);
-  if (color > most_portmanteau) widen_by_blocks(trials, estimate);
+  if (color > most_portmanteau_of_search) widen_by_blocks(trials, estimate);
   refer_to_zero(estimate);
   std::vector<Weight> weights;
   for (size_t m = 0; m < estimate.members.size(); ++m) weights.push_back(weigh(trials, estimate, m));

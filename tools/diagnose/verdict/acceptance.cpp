@@ -76,6 +76,7 @@ class Judge {
             return Refusal{m,
                            "what a load that flies leaves after its blows resembles it, and the diagram "
                            "simulates no better with it"};
+    if (const auto refusal = fine_pattern_of_noise(state)) return refusal;
     for (size_t i = 1; i < state.runs.size(); ++i)
       for (size_t m : state.staircase.added[i])
         if (state.conclusion.weights[m].certainty < 1 && !is_worse(state.runs[i], state.runs[i - 1]))
@@ -91,6 +92,19 @@ class Judge {
   }
 
  private:
+  std::optional<Refusal> fine_pattern_of_noise(const Acceptance& state) const {
+    for (size_t i = 1; i < state.runs.size(); ++i) {
+      const DiagnosisStep &before = state.staircase.steps[i - 1], &after = state.staircase.steps[i];
+      if (!after.is_optional || after.force_rmse < (1 - criteria::least_help) * before.force_rmse) continue;
+      for (size_t m : state.staircase.added[i]) {
+        const Member& member = state.conclusion.estimate.members[m];
+        if (member.candidate->is_periodic && !member.candidate->repeats_in_time &&
+            member.nonlinear[0] < criteria::fine_pitch * member.candidate->nonlinear[0].low)
+          return Refusal{m, "its pitch passes within a few rows, and the forces balance no better with it"};
+      }
+    }
+    return {};
+  }
   std::optional<Refusal> load_of_wandering_sensor(const Acceptance& state) {
     const Estimate& found = state.conclusion.estimate;
     const auto load = std::ranges::find_if(found.members, is_own_load);

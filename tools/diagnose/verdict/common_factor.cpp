@@ -82,6 +82,12 @@ void tell_common_factor(const Trials& trials, const std::vector<InverseDynamics>
              1 / mass.value)});
   } else if (!has_others && input.is_moved && is_damped && !mass.is_moved && !damping.is_moved) {
     declare(result, {"force_gain"}, {"inertia", "viscous_friction"});
+    result.findings.push_back(
+        {fmt::format("the input acts {:.4g} times as strongly as stated", input.value),
+         fmt::format(
+             "the same law of motion has it as stated, and mass, damping and all else that is named {:.4g} "
+             "times as large: see its unit, and the gain between input and force",
+             1 / input.value)});
   }
 }
 
