@@ -97,9 +97,8 @@ constexpr double noise_reach = 30;
 /// [rows] In a pitch at the top speed: what repeats sooner leaps over the rows, and is noise. Slower parts of
 /// the motion show it better.
 constexpr double rows_of_shortest_pitch = 1.5;
-/// [shortest pitch] A pitch below, within four rows at the top speed, must matter: many of them fit any
-/// noise.
-constexpr double fine_pitch = 2.7;
+/// [rows] In a fine pitch at the top speed. It must matter, because many of them fit any noise.
+constexpr double rows_of_fine_pitch = 4;
 /// [cosine] Input and force push the states in the same direction: noise of one is noise of the other.
 constexpr double same_push = 0.99;
 /// [greatest position] Numbers of a record have some nine digits.

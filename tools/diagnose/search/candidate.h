@@ -45,6 +45,7 @@ struct Candidate {
   bool amplitude_is_one = false;
   /// Scans every pitch: the first nonlinear parameter is the pitch, and the columns are its sine and cosine.
   bool is_periodic = false;
+  double fine_pitch = 0;  ///< shorter ones pass within a few rows at the top speed
   AtRest at_rest = AtRest::free;
   bool flies = false;            ///< its force is zero for a while and returns with an impact
   bool is_repeatable = false;    ///< may occur more than once

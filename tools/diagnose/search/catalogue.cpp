@@ -211,6 +211,7 @@ Candidate candidate_of(const Effect& effect, std::shared_ptr<const EffectPlan> p
       parameter.span = sizes.stroke;
       parameter.centre = 0.5 * (sizes.lowest_position + sizes.highest_position);
       parameter.low = std::max(parameter.low, shortest_pitch(sizes));
+      candidate.fine_pitch = fine_pitch(sizes);
       parameter.high = std::max(parameter.high, 2 * parameter.low);
     }
     parameter.grid = grid_of(parameter, candidate.nonlinear.empty(), p.points);
@@ -324,6 +325,10 @@ RecordSizes sizes_of(const std::vector<std::shared_ptr<const Path>>& paths,
 
 double shortest_pitch(const RecordSizes& sizes) {
   return criteria::rows_of_shortest_pitch * sizes.top_speed * sizes.sample_time;
+}
+
+double fine_pitch(const RecordSizes& sizes) {
+  return criteria::rows_of_fine_pitch * sizes.top_speed * sizes.sample_time;
 }
 
 bool has_uneven_rows(const std::vector<std::shared_ptr<const Path>>& paths) {

@@ -34,8 +34,10 @@ std::string hidden_by_input_noise(const Effect& effect);
 /// record lacks; empty: it can.
 std::string hidden_by_controller(const Effect& effect);
 
-/// [position] What repeats sooner along these records is not looked for.
+/// [position] What repeats sooner than the first along these records is not looked for, and what repeats
+/// sooner than the second must matter.
 double shortest_pitch(const RecordSizes& sizes);
+double fine_pitch(const RecordSizes& sizes);
 
 /// Effects that cannot be added, and effects whose numbers cannot be computed for these records, are left
 /// out. `rows_are_uneven`: see has_uneven_rows(). Throws InputError with every problem of the effect files.

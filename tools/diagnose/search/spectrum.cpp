@@ -164,8 +164,10 @@ std::vector<Shape> periodic_shapes(const Trials& trials, const Estimate& estimat
     Weights& weight = weights[candidate.acts];
     for (size_t t = weight.size(); t < trials.list.size(); ++t)
       weight.push_back(adjoint(trials.list[t], (*estimate.fitted)[t], candidate.acts));
-    std::vector<double> pitches =
-        peaks(spectrum(trials, estimate, candidate, weight, grid, stroke), grid, low, high, lines);
+    const std::vector<double> explained = spectrum(trials, estimate, candidate, weight, grid, stroke);
+    const double fine = std::clamp(candidate.fine_pitch, low, high);
+    std::vector<double> pitches = peaks(explained, grid, fine, high, lines);
+    if (fine > low) std::ranges::copy(peaks(explained, grid, low, fine, 1), std::back_inserter(pitches));
     for (const Member& member : estimate.members)
       if (member.candidate->is_periodic && !candidate.repeats_in_time && !member.candidate->repeats_in_time &&
           member.candidate != &candidate && member.nonlinear[0] > low && member.nonlinear[0] < high)

@@ -99,7 +99,7 @@ class Judge {
       for (size_t m : state.staircase.added[i]) {
         const Member& member = state.conclusion.estimate.members[m];
         if (member.candidate->is_periodic && !member.candidate->repeats_in_time &&
-            member.nonlinear[0] < criteria::fine_pitch * member.candidate->nonlinear[0].low)
+            member.nonlinear[0] < member.candidate->fine_pitch)
           return Refusal{m, "its pitch passes within a few rows, and the forces balance no better with it"};
       }
     }
