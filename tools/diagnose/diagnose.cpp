@@ -11,6 +11,7 @@
 #include "tools/diagnose/search/leaps_of_input.h"
 #include "tools/diagnose/search/noisy_input.h"
 #include "tools/diagnose/search/remaining_force.h"
+#include "tools/diagnose/search/replacement.h"
 #include "tools/diagnose/verdict/acceptance.h"
 #include "tools/diagnose/verdict/common_factor.h"
 #include "tools/diagnose/verdict/found_parameters.h"
@@ -107,9 +108,10 @@ class Inquiry {
     const std::vector<Shape>& shapes = shapes_along_fitted_rows();
     const Estimate& e = conclusion.estimate;
     refused_.push_back(e.members[member].candidate);
-    Conclusion rest =
-        conclude(trials_, catalogue_.candidates, shapes,
-                 fit_members(trials_, without_one(e.members, member), e.noise, e.motion, 8), refused_);
+    Conclusion rest = conclude(trials_, catalogue_.candidates, shapes,
+                               in_place_of(trials_, e, member, conclusion.substitutes[member], refused_,
+                                           catalogue_.candidates.size()),
+                               refused_);
     look_at_all_rows(rest);
     return rest;
   }

@@ -1,4 +1,6 @@
 #include "tools/diagnose/search/alternatives.h"
+#include "tools/diagnose/search/replacement.h"
+#include "tools/diagnose/search/weight.h"
 #include <algorithm>
 #include <set>
 #include "tools/diagnose/criteria.h"
@@ -78,6 +80,36 @@ std::vector<OtherSet> other_sets(Rivals& rivals, const std::vector<Member>& memb
   std::ranges::stable_sort(list, {}, &OtherSet::loss);
   if (list.size() > most_told) list.resize(most_told);
   return list;
+}
+
+namespace {
+
+/// With usual shapes, and no force yet.
+Member at_start(const Candidate& candidate) {
+  Member member{&candidate, std::vector<double>(candidate.linear.size(), 0.0), {}};
+  for (const CandidateParameter& p : candidate.nonlinear) member.nonlinear.push_back(p.start);
+  return member;
+}
+
+}  // namespace
+
+Estimate in_place_of(Trials& trials, const Estimate& estimate, size_t member,
+                     const std::vector<Substitute>& substitutes, const std::vector<const Candidate*>& refused,
+                     size_t catalogue) {
+  constexpr int iterations = 8;
+  const auto fitted = [&](std::vector<Member> members) {
+    return fit_members(trials, std::move(members), estimate.noise, estimate.motion, iterations);
+  };
+  Estimate best = fitted(without_one(estimate.members, member));
+  for (const Substitute& other : substitutes) {
+    if (std::ranges::find(refused, other.candidate) != refused.end()) continue;
+    std::vector<Member> members = estimate.members;
+    members[member] = at_start(*other.candidate);
+    Estimate trial = fitted(std::move(members));
+    if (trial.is_valid && criterion(trials, trial, catalogue) < criterion(trials, best, catalogue))
+      best = std::move(trial);
+  }
+  return best;
 }
 
 }  // namespace loopwright::diagnosis
