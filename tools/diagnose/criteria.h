@@ -116,8 +116,8 @@ constexpr double least_unfelt_share = 0.02;
 constexpr double least_memory_of_offset = 30;
 /// [noise of the sensor] Its size, and where the search for it begins.
 constexpr double least_offset = 0.1, most_offset = 1e4, first_offsets[] = {3, 50};
-/// [-2 ln L] By which it must explain more than a load that moves by itself: either has two parameters or
-/// three. Both signs are few: what a load does in jumps is no wandering offset.
+/// [-2 ln L] By which it must explain more than a load that moves by itself: the offset has two numbers, a
+/// load two or three, so that neither pays for more.
 constexpr double least_gain_of_offset = 0;
 /// [-2 ln L] The same of errors that nothing explains: many shapes of missing effects use it a little.
 constexpr double least_gain_of_offset_alone = 50;
