@@ -86,9 +86,10 @@ Diagnosis diagnose_any_diagram(const std::string& diagram, const std::vector<std
   if (model.record().shortened) result.findings.push_back(*model.record().shortened);
   if (const size_t count = model.record().false_readings; count > 0)
     result.findings.push_back(readings_are_false(count, "they count as missing"));
+  bool begins_anew = false;
   for (const RecordedOutput& output : model.record().outputs)
     if (output.leaps_by_a_turn > 0)
-      result.findings.push_back(angle_leaps(output.port, output.leaps_by_a_turn));
+      result.findings.push_back(angle_leaps(output.port, output.leaps_by_a_turn)), begins_anew = true;
   if (const size_t count = take_unfelt_leaps_away(fitter); count > 0)
     result.findings.push_back(inputs_are_not_felt(count));
   const auto found = search_with_second_opinion(fitter, progress);
@@ -110,6 +111,7 @@ Diagnosis diagnose_any_diagram(const std::string& diagram, const std::vector<std
   if (model.work().was_short()) result.findings.push_back(ended_at_limit(most_work));
   progress("prediction, simulation and verdict", 0.95);
   tell_sites(filter, *found, result);
+  if (begins_anew) result.verdict = Verdict::unexplained;
   result.picture = picture_of_improved(options, result);
   try_improved(options, result);
   return result;
