@@ -95,9 +95,17 @@ std::pair<double, double> begin_of(const std::vector<double>& numbers, const std
   return {c[0], c[1]};
 }
 
-/// The speed at the first row: what the model, begun without any, misses within the first time constant of
+/// By the first readings alone: the filter soon corrects it.
+double first_speed(const AxisRecord& record) {
+  if (const MeasuredPort* velocity = record.find("velocity")) return velocity->value[0];
+  const std::vector<double>& place = record.measured.front().value;
+  return place.size() < 2 ? 0 : (place[1] - place[0]) / record.sample_time;
+}
+
+/// The speed at the first row of an axis with a load, which a wrong one moves, and which swings on for as
+/// long as its damping lets it: what the model, begun without any, misses within the first time constant of
 /// the filter grows with it. The difference of two readings has the noise of both and is that of the middle
-/// between them; a load that a wrong speed moves swings on for as long as its damping lets it.
+/// between them.
 double speed_at_start(AxisModel& model, const Drives& drives, const Pace& pace) {
   const AxisRecord& record = model.record();
   const size_t constant = size_t(double(pace.samples_to_correct) / criteria::correction),
@@ -135,8 +143,8 @@ Prediction step_along(AxisModel& model, const LinearAxis& axis, const Gains* gai
   if (!record.duration.empty()) path.duration = first_rows(record.duration, rows);
   const MeasuredPort* position = record.find("position");
   const MeasuredPort* velocity = record.find("velocity");
-  const double speed = speed_at_start(model, drives, pace);
-  model.start(position ? std::optional(position->value[0]) : std::nullopt, speed);
+  model.start(position ? std::optional(position->value[0]) : std::nullopt,
+              axis.load_states > 0 ? speed_at_start(model, drives, pace) : first_speed(record));
   double d = 0, passed = 0, left = 0;  // left: velocity error after the correction
   const bool follows_velocity = model.position_follows_velocity();
   int turning = 0;

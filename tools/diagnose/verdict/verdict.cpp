@@ -150,7 +150,7 @@ void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, c
       diagnosis.contradictions.push_back("the counts of the sensor are too coarse to show how the load of " +
                                          name + " moves: its parameters are not certain");
   }
-  if (is_not_white && std::ranges::none_of(e.members, is_own_load))
+  if (is_not_white && !is_counted && std::ranges::none_of(e.members, is_own_load))
     if (const auto sensor = wandering_sensor(trials, e);
         sensor && sensor->gain > criteria::least_gain_of_offset_alone)
       diagnosis.contradictions.push_back(described(trials, *sensor));
