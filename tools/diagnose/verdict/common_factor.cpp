@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include "tools/diagnose/criteria.h"
 
 namespace loopwright::diagnosis {
@@ -65,29 +64,26 @@ void tell_common_factor(const Trials& trials, const std::vector<InverseDynamics>
                damping = factor_of(result, "viscous_friction", model.nominal_damping());
   const bool is_damped = model.nominal_damping() > 0, has_others = has_other_forces(trials, inverse);
   const bool is_one = mass.is_moved && (damping.is_moved || !is_damped) && (!is_damped || mass.is(damping));
+  const auto tell = [&](std::string what, std::string_view same_law, double factor) {
+    result.findings.push_back({std::move(what), fmt::format(fmt::runtime(same_law), 1 / factor)});
+  };
   if (has_others && input.is_moved && is_one && input.is(mass)) {
-    result.findings.push_back(
-        {fmt::format("input, mass and damping are {:.3g} times what is stated, all three", input.value),
-         fmt::format(
-             "the same law of motion has all of them as stated, and what else the diagram has {:.3g} times "
-             "as strong: its friction, drag or spring may be stated wrongly",
-             1 / input.value)});
+    tell(fmt::format("input, mass and damping are {:.3g} times what is stated, all three", input.value),
+         "the same law of motion has all of them as stated, and what else the diagram has {:.3g} times "
+         "as strong: its friction, drag or spring may be stated wrongly",
+         input.value);
   } else if (!has_others && !input.is_moved && is_damped && is_one) {
     declare(result, {"inertia", "viscous_friction"}, {"force_gain"});
-    result.findings.push_back(
-        {fmt::format("mass and damping are {:.4g} times what is stated, both", mass.value),
-         fmt::format(
-             "the same law of motion has both as stated, and the input and all else that is named {:.4g} "
-             "times as large: see the unit of the input and its gain",
-             1 / mass.value)});
+    tell(fmt::format("mass and damping are {:.4g} times what is stated, both", mass.value),
+         "the same law of motion has both as stated, and the input and all else that is named {:.4g} "
+         "times as large: see the unit of the input and its gain",
+         mass.value);
   } else if (!has_others && input.is_moved && is_damped && !mass.is_moved && !damping.is_moved) {
     declare(result, {"force_gain"}, {"inertia", "viscous_friction"});
-    result.findings.push_back(
-        {fmt::format("the input acts {:.4g} times as strongly as stated", input.value),
-         fmt::format(
-             "the same law of motion has it as stated, and mass, damping and all else that is named {:.4g} "
-             "times as large: see its unit, and the gain between input and force",
-             1 / input.value)});
+    tell(fmt::format("the input acts {:.4g} times as strongly as stated", input.value),
+         "the same law of motion has it as stated, and mass, damping and all else that is named {:.4g} "
+         "times as large: see its unit, and the gain between input and force",
+         input.value);
   }
 }
 

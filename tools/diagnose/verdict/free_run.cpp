@@ -181,7 +181,8 @@ size_t rows_run_freely(const Trial& trial) {
   return trial.held_out_from < rows ? rows - trial.held_out_from : rows;
 }
 
-size_t rows_of_window(const Trial& trial, AxisModel& model, const Noise& noise) {
+size_t rows_of_window(const Trial& trial, const Noise& noise) {
+  AxisModel& model = *trial.model;
   const LinearAxis axis = model.linearize();
   const double constant = correction_time(axis, gains_of(axis, noise, model.nominal_inertia())),
                affordable = std::min(double(model.record().rows()) / (2 * criteria::plenty_of_windows),
@@ -221,7 +222,7 @@ FreeRun run_freely(const std::vector<Member>& members, const Improver& improver,
     if (only_held_out && !holds_out(trials.list[t])) continue;
     if (trials.interrupt && *trials.interrupt) throw Interrupted{};
     AxisModel& model = *trials.list[t].model;
-    const size_t length = rows_of_window(trials.list[t], model, noise);
+    const size_t length = rows_of_window(trials.list[t], noise);
     result.horizon_s = std::max(result.horizon_s, double(length) * model.record().sample_time);
     FreeAxis axis(diagram, *improver.experiments()[t], model, load,
                   steps_for(members, model.record().sample_time));

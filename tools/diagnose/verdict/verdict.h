@@ -25,9 +25,9 @@ RecordFinding ended_at_limit(double most_work);
 RecordFinding noise_is_loud(double share_of_drive, double shortest_pitch, const MachineUnits& units);
 /// The rows that are simulated hold too few stretches of a horizon.
 RecordFinding too_few_simulations(const FreeRun& run);
-/// Noise was taken away from the recorded input: see noise_instead_of_late_input().
 /// Values of recorded inputs that were taken away because the machine does not feel them.
 RecordFinding inputs_are_not_felt(size_t count);
+/// Noise was taken away from the recorded input: see noise_instead_of_late_input().
 RecordFinding input_is_noisy(const Trials& trials, const InputNoise& noise);
 
 /// Verdict, remainder and its variables, the latter along `motion`. `tight` is the noise of the search: with
