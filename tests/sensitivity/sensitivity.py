@@ -54,6 +54,12 @@ def answers(benchmark, program, name, factor, folders):
     return [benchmark.judged(folder, file) for folder, file in zip(folders, files)]
 
 
+def complaint(program, folder):
+    """What the program prints on a record where it does not answer."""
+    done = subprocess.run([str(a) for a in (program, *NONE, folder)], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    return done.stderr.strip()
+
+
 RIGHT = ("exact", "declared")
 
 
@@ -111,6 +117,9 @@ def main():
     with concurrent.futures.ThreadPoolExecutor(max_workers=options.jobs) as pool:
         for run, result in zip(runs, pool.map(lambda r: answers(benchmark, options.program, *r, folders), runs)):
             results[run] = result
+            if run == NONE and not any((folder / f"answer.{NONE[0]}.{NONE[1]}.json").exists() for folder in folders):
+                pool.shutdown(wait=False, cancel_futures=True)
+                parser.exit(1, f"{options.program} answers on none of these records; it says:\n{complaint(options.program, folders[0])}\n")
             print(f"{len(results)}/{len(runs)} {run[0]} × {run[1]}", file=sys.stderr, flush=True)
     print(table(varied, results), end="")
 

@@ -84,6 +84,55 @@ std::vector<OtherSet> other_sets(Rivals& rivals, const std::vector<Member>& memb
 
 namespace {
 
+/// What the first has and the second has not.
+std::vector<const Candidate*> without(std::vector<const Candidate*> list,
+                                      const std::vector<const Candidate*>& others) {
+  for (const Candidate* other : others)
+    if (const auto at = std::ranges::find(list, other); at != list.end()) list.erase(at);
+  return list;
+}
+
+bool is_of_one(const OtherSet& set) { return set.replaced.size() == 1 && set.by.size() == 1; }
+
+}  // namespace
+
+std::vector<OtherSet> other_sets_of_laws(Rivals& rivals, const std::vector<Member>& members,
+                                         const std::vector<Proposal>& proposals) {
+  constexpr size_t most_tried = 3;
+  std::vector<OtherSet> list;
+  size_t tried = 0;
+  for (const Proposal& proposal : proposals) {
+    if (tried++ >= most_tried || rivals.is_spent()) break;
+    std::vector<const Candidate*> before, now;
+    for (size_t m : proposal.removed) before.push_back(members[m].candidate);
+    for (const Member& m : proposal.added) now.push_back(m.candidate);
+    OtherSet other{without(before, now), without(now, before)};
+    // Which dry friction it is, is seen after reversals.
+    if (is_of_one(other) && is_dry_friction(*other.replaced.front()) && is_dry_friction(*other.by.front()))
+      continue;
+    if (const auto loss = rivals.loss_of(proposal)) other.loss = *loss, list.push_back(std::move(other));
+  }
+  return list;
+}
+
+void add_laws(const std::vector<OtherSet>& laws, const Candidate& member, double nothing,
+              std::vector<Substitute>& substitutes) {
+  for (const OtherSet& law : laws)
+    if (is_of_one(law) && law.replaced.front() == &member && law.loss < nothing)
+      add_if_closer(substitutes, {law.by.front(), law.loss});
+}
+
+void add_laws(const std::vector<OtherSet>& laws, std::vector<OtherSet>& sets) {
+  for (const OtherSet& law : laws) {
+    const auto is_same = [&](const OtherSet& set) {
+      return set.replaced == law.replaced && set.by == law.by;
+    };
+    if (!is_of_one(law) && std::ranges::none_of(sets, is_same)) sets.push_back(law);
+  }
+}
+
+namespace {
+
 /// With usual shapes, and no force yet.
 Member at_start(const Candidate& candidate) {
   Member member{&candidate, std::vector<double>(candidate.linear.size(), 0.0), {}};

@@ -15,6 +15,15 @@ struct OtherSet {
   double loss = 0;  ///< how much worse the criterion is with it
 };
 
+/// Laws of one variable that do as well together, told by what differs from those that are there.
+std::vector<OtherSet> other_sets_of_laws(Rivals& rivals, const std::vector<Member>& members,
+                                         const std::vector<Proposal>& proposals);
+/// Those that exchange a single member go to its alternatives, as long as they explain something, the others
+/// to the sets.
+void add_laws(const std::vector<OtherSet>& laws, const Candidate& member, double nothing,
+              std::vector<Substitute>& substitutes);
+void add_laws(const std::vector<OtherSet>& laws, std::vector<OtherSet>& sets);
+
 void add_if_new(std::vector<Substitute>& list, const Candidate* candidate);
 
 /// Alternatives: every other candidate in place of a member, with its shape and all parameters fitted. One

@@ -50,7 +50,7 @@ struct Candidate {
   bool flies = false;            ///< its force is zero for a while and returns with an impact
   bool is_repeatable = false;    ///< may occur more than once
   bool repeats_in_time = false;  ///< its period is in time, not in position
-  bool is_of_velocity = false;   ///< a force that depends on the velocity alone
+  std::string law_of;            ///< "velocity", "position": what its force is a law of, without memory
   bool is_unknown = false;       ///< not from the catalogue, but any function of the variables in `form`
   /// For several shapes together: cheaper than one after the other.
   std::function<std::vector<Columns>(const Path& path, const std::vector<std::vector<double>>& shapes)>

@@ -54,6 +54,18 @@ std::vector<double> grid_of(const CandidateParameter& p, bool is_first, int poin
   return grid;
 }
 
+/// A force that also depends on the velocity where a position gives place, as an end stop, is a law of the
+/// position.
+std::string variable_of_law(const Effect& effect) {
+  const auto reads = [&](const char* role) {
+    return std::ranges::find(effect.reads, role) != effect.reads.end();
+  };
+  const bool reads_more = std::ranges::any_of(
+      effect.reads, [](const std::string& role) { return role != "position" && role != "velocity"; });
+  if (reads_more) return "";
+  return reads("position") ? "position" : reads("velocity") ? "velocity" : "";
+}
+
 /// The columns used last: fits return to the same path and shape many times.
 class Remembered {
  public:
@@ -228,8 +240,7 @@ Candidate candidate_of(const Effect& effect, std::shared_ptr<const EffectPlan> p
   }
   candidate.is_repeatable = effect.is_repeatable, candidate.at_rest = effect.at_rest;
   candidate.flies = candidate.acts == Acts::force && compiled->plan->flies;
-  candidate.is_of_velocity = candidate.acts == Acts::force && !compiled->plan->remembers &&
-                             effect.reads == std::vector<std::string>{"velocity"};
+  if (candidate.acts == Acts::force && !compiled->plan->remembers) candidate.law_of = variable_of_law(effect);
   candidate.columns_at = [compiled](const Path& path, const std::vector<std::vector<double>>& shapes) {
     return compiled->columns(path, shapes);
   };

@@ -6,12 +6,12 @@
 #include "tools/diagnose/search/doubt.h"
 #include "tools/diagnose/search/flights.h"
 #include "tools/diagnose/search/law_swaps.h"
+#include "tools/diagnose/search/laws_of_one_variable.h"
 #include "tools/diagnose/search/noisy_input.h"
 #include "tools/diagnose/search/one_direction.h"
 #include "tools/diagnose/search/remaining_force.h"
 #include "tools/diagnose/search/rivals.h"
 #include "tools/diagnose/search/spectrum.h"
-#include "tools/diagnose/search/velocity_laws.h"
 #include "tools/diagnose/search/whiteness.h"
 
 namespace loopwright::diagnosis {
@@ -187,18 +187,30 @@ void add_late_shapes(const Trials& trials, Conclusion& result, Rivals& rivals,
   }
 }
 
+/// Laws of one variable that others of it replace together.
+std::vector<OtherSet> laws_beside(const Trials& trials, const Estimate& estimate,
+                                  const std::vector<Candidate>& candidates, Rivals& rivals,
+                                  double most_loss) {
+  std::vector<OtherSet> laws;
+  for (const char* variable : {"velocity", "position"})
+    std::ranges::move(other_sets_of_laws(rivals, estimate.members,
+                                         other_laws(trials, estimate, candidates, variable, most_loss)),
+                      std::back_inserter(laws));
+  return laws;
+}
+
 /// Computes the alternatives, and from them the probability of each member.
 void ask_rivals(const Trials& trials, Conclusion& result, Evidence& evidence,
                 const std::vector<Proposal>& exchanges, const std::vector<Candidate>& candidates,
-                const std::vector<Shape>& shapes, Rivals& rivals, const FrictionAtReversals& at_reversals,
-                double n) {
+                Rivals& rivals, const FrictionAtReversals& at_reversals, double n) {
   const double reach = rivals.reach();
   // Far from its operating point the loss predicted by a linearization may be wrong by a hundred.
   const double far = std::max(100.0, 3 * reach);
   const std::vector<Member>& members = result.estimate.members;
   std::vector<Proposal> several = evidence.exchanges_for_pairs();
   std::ranges::copy(exchanges, std::back_inserter(several));
-  std::erase_if(several, [&](const Proposal& p) { return p.gain < -std::max(30.0, reach); });
+  const double far_off = std::max(30.0, reach);  // for two shapes at a time
+  std::erase_if(several, [&](const Proposal& p) { return p.gain < -far_off; });
   std::ranges::stable_sort(several, std::ranges::greater{}, &Proposal::gain);
   result.other_sets = other_sets(rivals, members, several);
   std::vector<Proposal> swaps = shape_swaps(members, candidates);
@@ -206,12 +218,14 @@ void ask_rivals(const Trials& trials, Conclusion& result, Evidence& evidence,
   std::vector<Proposal> near = swaps;
   for (const Proposal& p : exchanges)
     if (p.gain > -far && !contains(swaps, p)) near.push_back(p);
-  std::ranges::move(velocity_law_swaps(trials, result.estimate, shapes), std::back_inserter(near));
+  const std::vector<OtherSet> laws = laws_beside(trials, result.estimate, candidates, rivals, far_off);
+  add_laws(laws, result.other_sets);
   const std::vector<double> removal = evidence.gains_of_removal(n);
   for (size_t m = 0; m < members.size(); ++m) {
     result.weights[m].loss = -removal[m];
     result.substitutes.push_back(
         substitutes_of(rivals, m, *members[m].candidate, near, result.weights[m].loss));
+    add_laws(laws, *members[m].candidate, result.weights[m].loss, result.substitutes.back());
     add_simpler_friction(result.substitutes.back(), trials, rivals, result.estimate, m, exchanges);
     for (const auto& [member, law] : at_reversals.not_excluded())
       if (member == m) add_if_new(result.substitutes.back(), law);
@@ -304,7 +318,7 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
       result.trail.push_back("with the noise known, more is seen");
   }
   if (!instead) {
-    ask_rivals(trials, result, evidence, exchanges, candidates, shapes, rivals, at_reversals, n);
+    ask_rivals(trials, result, evidence, exchanges, candidates, rivals, at_reversals, n);
     std::ranges::move(alike_in_one_direction(trials, estimate, candidates),
                       std::back_inserter(result.other_sets));
     if (rounds > 0 && (instead = rivals.better(unexplained(result.portmanteau_beside_counts()))))

@@ -43,10 +43,9 @@ bool is_far(const std::vector<double>& shape, const std::vector<double>& other) 
   return false;
 }
 
-/// Squares that a solution leaves, beyond rounding.
-double left_by(double squares, double of) { return std::max(squares, 1e-12 * of); }
-
 }  // namespace
+
+double left_by(double squares, double of) { return std::max(squares, 1e-12 * of); }
 
 size_t parameters_of(const Candidate& candidate) {
   return (candidate.amplitude_is_one ? 0 : candidate.linear.size()) + candidate.nonlinear.size();
@@ -279,16 +278,23 @@ std::optional<double> Evidence::gain_of(const std::vector<size_t>& shapes, const
   return n * std::log(explained_ / left_by(added.squares, errors.squares)) - cost;
 }
 
+/// Of all parameters of the members that stay, from the step of their amplitudes.
+std::vector<double> Evidence::step_of(const std::vector<size_t>& removed,
+                                      const Eigen::VectorXd& amplitudes) const {
+  std::vector<double> step;
+  Eigen::Index next = 0;
+  for (const FreeParameter& p : free_)
+    if (std::ranges::find(removed, p.member) == removed.end())
+      step.push_back(p.is_linear ? amplitudes[next++] : 0);
+  return step;
+}
+
 /// The step of the linear parameters of the members that stay, and of the shapes: if the members' shapes are
 /// poorly determined, the full step would leave the linear range.
 Proposal Evidence::with_step(const std::vector<size_t>& shapes, const Errors& errors, double gain) const {
   const Added added = add(G_, columns_of(shapes), errors.amplitudes, errors.b);
-  Proposal proposal{errors.removed, {}, {}, gain};
+  Proposal proposal{errors.removed, {}, step_of(errors.removed, added.before), gain};
   Eigen::Index next = 0;
-  for (const FreeParameter& p : free_)
-    if (std::ranges::find(errors.removed, p.member) == errors.removed.end())
-      proposal.step.push_back(p.is_linear ? added.before[next++] : 0);
-  next = 0;
   for (size_t s : shapes) {
     const Shape& shape = *shapes_[s];
     Member member{shape.candidate, {}, shape.nonlinear};

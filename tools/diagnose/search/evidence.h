@@ -35,6 +35,9 @@ size_t parameters_of(const Candidate& candidate);
 /// n ln(mean square) + ln|S| + cost of the parameters; smaller is better.
 double criterion(const Trials& trials, const Estimate& estimate, size_t catalogue);
 
+/// Squares that a solution leaves, beyond rounding.
+double left_by(double squares, double of);
+
 /// The members with the proposal applied.
 std::vector<Member> applied(const Proposal& proposal, std::vector<Member> members);
 
@@ -62,6 +65,11 @@ class Evidence {
   /// A member, or two, replaced by two shapes, both of them needed: the best for each pair of candidates,
   /// best first.
   std::vector<Proposal> exchanges_for_pairs();
+  /// Some members replaced by up to `most` shapes of different candidates: the best for each set of
+  /// candidates, best first, as long as it loses less than `most_loss`, both of a record of `n` fitted
+  /// numbers. Shapes of one candidate follow each other along its grid: what lies between two points is
+  /// nearly a sum of both.
+  std::vector<Proposal> sets(const std::vector<size_t>& removed, size_t most, double n, double most_loss);
   /// The members without one, with the saving (mostly negative) of a record of `n` fitted numbers.
   std::vector<double> gains_of_removal(double n) const;
   double rows() const { return n_; }
@@ -87,6 +95,7 @@ class Evidence {
   std::vector<int> columns_of(const std::vector<size_t>& shapes) const;
   std::optional<double> gain_of(const std::vector<size_t>& shapes, const Errors& errors, double n) const;
   Proposal with_step(const std::vector<size_t>& shapes, const Errors& errors, double gain) const;
+  std::vector<double> step_of(const std::vector<size_t>& removed, const Eigen::VectorXd& amplitudes) const;
   bool may_be_added(const Shape& shape, const std::vector<size_t>& removed) const;
   /// A shape, and what it saves.
   struct Promise {
@@ -94,6 +103,25 @@ class Evidence {
     double gain;
   };
   std::vector<Promise> best_shapes(const Errors& errors, double n) const;
+
+  /// A shape, or what lies between it and the next one of its candidate.
+  struct Between {
+    size_t shape;
+    bool has_next;
+    auto operator<=>(const Between&) const = default;
+  };
+  struct Set {
+    std::vector<Between> shapes;  ///< ascending
+    double gain = 0;
+  };
+  std::vector<Between> between_points() const;
+  std::vector<std::vector<Between>> extended(const std::vector<Set>& sets,
+                                             const std::vector<Between>& all) const;
+  std::vector<int> columns_of(const std::vector<Between>& set) const;
+  std::vector<Member> members_of(const std::vector<Between>& set, const Eigen::VectorXd& theta) const;
+  std::optional<double> gain_of_set(const std::vector<Between>& set, const Errors& errors, double n) const;
+  Proposal with_step(const Set& set, const Errors& errors) const;
+  std::vector<Proposal> best_of_each(const std::vector<Set>& sets, const Errors& errors) const;
 
   const std::vector<Member> members_;
   const std::vector<const Shape*> shapes_;

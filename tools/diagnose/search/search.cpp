@@ -9,6 +9,7 @@
 #include "tools/diagnose/search/doubt.h"
 #include "tools/diagnose/search/flights.h"
 #include "tools/diagnose/search/law_swaps.h"
+#include "tools/diagnose/search/laws_of_one_variable.h"
 #include "tools/diagnose/search/other_starts.h"
 #include "tools/diagnose/search/remaining_force.h"
 #include "tools/diagnose/search/spectrum.h"
@@ -68,6 +69,13 @@ class Search {
     leave_out_doubtful(trials_, best_);
   }
 
+  bool take_pruned(Estimate better, const char* what) {
+    take(std::move(better));
+    note(what);
+    prune();
+    return true;
+  }
+
   /// Improvement of the criterion of a trial over the best set, on the same rows.
   double gain_of(Estimate& trial) {
     if (!trial.is_valid) return -std::numeric_limits<double>::infinity();
@@ -115,7 +123,7 @@ class Search {
   /// False when nothing more was found.
   bool grow(size_t most) {
     for (size_t step = 0; step < most && !is_spent(); ++step) {
-      if (!extend()) return false;
+      if (!extend() && !exchange_laws()) return false;
       sharpen_noise();
       if (exchange()) sharpen_noise();
       prune();
@@ -224,11 +232,7 @@ class Search {
       if (!trial.is_valid || score(trial) >= best_score) continue;
       best_score = score(trial), best = std::move(trial);
     }
-    if (!best.is_valid) return false;
-    take(std::move(best));
-    note("without a name");
-    prune();
-    return true;
+    return best.is_valid && take_pruned(std::move(best), "without a name");
   }
 
   /// Alternative initial sets: the best function of the variables alone, and with one effect.
@@ -267,27 +271,23 @@ class Search {
     note("best of all");
   }
 
-  /// Several names for what depends on the velocity alone, if a function without a name explains much more.
+  /// Other laws of one variable, if they do better together.
+  bool exchange_laws() {
+    bool any = false;
+    for (const char* variable : {"velocity", "position"}) {
+      if (is_spent()) return any;
+      std::optional<Estimate> better = better_laws(trials_, best_, candidates_, variable, trail_);
+      any |= better && take_pruned(std::move(*better), "with other laws");
+    }
+    return any;
+  }
+
+  /// Several names for what depends on the velocity alone.
   void give_way_to_function_of_velocity() {
-    std::vector<Member> members = best_.members;
-    const size_t stacked =
-        std::erase_if(members, [](const Member& m) { return m.candidate->is_of_velocity; });
-    const auto function = std::ranges::find(unknown_, true, &Candidate::is_of_velocity);
-    if (stacked < 2 || function == unknown_.end() || is_spent()) return;
-    members.push_back({&*function, std::vector<double>(function->linear.size()), {}});
-    // Each with its own noise: what a name leaves is taken for noise otherwise, and then hides in it.
-    constexpr int iterations = 4;
-    Estimate trial = with_own_noise(trials_, refined(members, iterations), iterations),
-             names = with_own_noise(trials_, best_, iterations);
-    const double least = criteria::least_gain_without_name +
-                         criteria::least_gain_over_stacked_names_per_row * double(fitted_numbers(trials_));
-    if (!trial.is_valid || !names.is_valid) return;
-    trail_.push_back(fmt::format("tried a function of velocity in place of {} names: criterion {:+.1f}",
-                                 stacked, score(trial) - score(names)));
-    if (score(trial) > score(names) - least) return;
-    take(std::move(trial));
-    note("without a name");
-    prune();
+    if (is_spent()) return;
+    std::optional<Estimate> function =
+        function_of_velocity(trials_, best_, unknown_, candidates_.size(), trail_);
+    if (function) take_pruned(std::move(*function), "without a name");
   }
 
   /// A member, or two, for another: also an equally good one, if it makes others unnecessary.
