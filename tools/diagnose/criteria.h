@@ -205,6 +205,8 @@ constexpr double least_gain_without_name = 20, least_gain_without_name_per_row =
 constexpr double least_gain_over_stacked_names_per_row = 0.02;
 /// [criterion] A set is clearly better; two sets that state the same law of motion differ by the noise alone.
 constexpr double clearly_better = 3, same_law = 20;
+/// [criterion] Laws of one variable that are promised to lose more than this together are not tried.
+constexpr double most_promised_loss_of_laws = 20;
 /// [-2 ln L] What a set that contains another one must explain beyond it to be an alternative.
 constexpr double least_gain_of_larger_set = 4;
 /// [reach of an alternative] Two statements of one law of motion lie closer together: the arithmetic and the
@@ -332,6 +334,11 @@ constexpr double most_over_floor = 1.25, far_over_noise = 5, far_over_noise_besi
 /// [input, rms] Of which something must be left: laws that take away nearly all of it follow a machine that
 /// does not answer, because its sensor is dead, its drive off, or its time has another unit.
 constexpr double least_input_left = 0.02;
+/// [input, rms] The same for saturations and dead bands, which beside a smaller mass stand for anything at one
+/// speed. A drive that saturates that much follows nothing.
+constexpr double least_input_left_by_law = 0.3;
+/// [force that is missing, rms] An effect of a set makes no more, unless others cancel it: right ones up to 1.7.
+constexpr double most_cancelled = 3;
 /// [numbers] Smooth functions of the motion and lines, as compare fits them, have so many levels. They follow
 /// that share of the noise of a record that has one independent value in each memory of the slow force.
 constexpr double levels_of_smooth_functions = 134;

@@ -81,6 +81,8 @@ struct NotLookedFor {
 /// An effect that the prediction errors asked for, but that does not stand.
 struct RefusedEffect {
   std::string effect, why;
+  bool is_of_sensor =
+      false;  ///< a sensor explains better what it stood for, which the diagram does not contain
   bool is_blurred = false;  ///< late by a few rows, each of which stands for several: nothing is left of it
 };
 

@@ -1,6 +1,9 @@
 #include "tools/effects/fragment_text.h"
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <algorithm>
 #include "engine/block/registry.h"
+#include "engine/diagram/expression.h"
 #include "engine/json/json.h"
 #include "tools/effects/json_text.h"
 #include "tools/effects/nest.h"
@@ -13,14 +16,19 @@ using Kind = Value::Kind;
 std::string FragmentText::block(const Value::Member& block, const std::string& path,
                                 const Surroundings& around, Settings& list) const {
   std::string settings, in;
+  const auto add = [&](const std::string& name, const std::string& value) {
+    if (!value.empty()) settings += fmt::format("{}\"{}\": {}", settings.empty() ? "" : ", ", name, value);
+  };
   for (const Value::Member& member : block.value.members) {
+    if (member.name == "constants") continue;
     if (member.name == "in") {
       for (const Value::Member& port : member.value.members)
         in += fmt::format("{}\"{}\": {}", in.empty() ? "" : ", ", port.name, wires(port.value, around));
-    } else if (const std::string value = setting(block, member, path, around, list); !value.empty()) {
-      settings += fmt::format("{}\"{}\": {}", settings.empty() ? "" : ", ", member.name, value);
+    } else {
+      add(member.name, setting(block, member, path, around, list));
     }
   }
+  add("constants", constants(block, path + ".constants", list));
   if (in.empty()) return "{" + settings + "}";
   const bool is_long = name_of(block.name).size() + settings.size() + in.size() > 95;
   return fmt::format("{{{},{}\"in\": {{{}}}}}", settings, is_long ? "\n " : " ", in);
@@ -38,6 +46,31 @@ std::string FragmentText::wire(const Value& wire, const Surroundings& around) co
   const size_t dot = source.find('.');
   if (dot != source.npos) return fmt::format("\"{}{}\"", name_of(source.substr(0, dot)), source.substr(dot));
   return fmt::format("\"{}\"", around.wire(source));
+}
+
+/// Those of a formula, and the parameters of the effect that it reads: the new diagram has none of these
+/// names.
+std::string FragmentText::constants(const Value::Member& block, const std::string& path,
+                                    Settings& list) const {
+  const Value::Member* formula = block.value.find("formula");
+  const Value::Member* stated = block.value.find("constants");
+  if (!formula) return stated ? value(stated->value, path, list) : "";
+  std::vector<std::string> items;
+  if (stated)
+    for (const Value& item : stated->value.items)
+      items.push_back(value(item, fmt::format("{}.{}", path, items.size()), list));
+  for (const NameUse& use : names_in(formula->value.text)) {
+    const std::string name(use.name);
+    const std::string entry = fmt::format("{{\"name\": \"{}\", ", name);
+    const auto is_same = [&](const std::string& item) { return item.starts_with(entry); };
+    if (!effect_.find(name) || std::ranges::any_of(items, is_same)) continue;
+    list.emplace_back(name, fmt::format("{}.{}.value", path, items.size()));
+    Value parameter;
+    parameter.kind = Kind::text, parameter.text = "=" + name;
+    const std::string number = values_.with_unit(parameter, effect_, units_);
+    items.push_back(entry + (number.starts_with('{') ? number.substr(1) : "\"value\": " + number + "}"));
+  }
+  return items.empty() ? "" : fmt::format("[{}]", fmt::join(items, ", "));
 }
 
 /// As written in the new diagram; empty: it is left out.

@@ -34,6 +34,7 @@ class FragmentText {
   using Settings = std::vector<std::pair<std::string, std::string>>;
   std::string setting(const Value::Member& block, const Value::Member& setting, const std::string& path,
                       const Surroundings& around, Settings& settings) const;
+  std::string constants(const Value::Member& block, const std::string& path, Settings& settings) const;
   std::string value(const Value& value, const std::string& path, Settings& settings) const;
 
   const Effect& effect_;

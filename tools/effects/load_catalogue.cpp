@@ -43,6 +43,9 @@ std::vector<std::string> effect_files(const std::string& folder, Problems& probl
   }
   for (const auto& entry : fs::directory_iterator(folder, code))
     if (entry.path().extension() == ".json") files.push_back(entry.path().string());
+  if (files.empty())
+    problems.error({}, "", "", fmt::format("the folder of effects \"{}\" contains none", folder)).hint =
+        "an effect is a file of its own, as in diagrams/effects: see docs/effects.md";
   std::ranges::sort(files);
   return files;
 }

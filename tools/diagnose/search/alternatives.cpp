@@ -102,15 +102,19 @@ std::vector<OtherSet> other_sets_of_laws(Rivals& rivals, const std::vector<Membe
   std::vector<OtherSet> list;
   size_t tried = 0;
   for (const Proposal& proposal : proposals) {
-    if (tried++ >= most_tried || rivals.is_spent()) break;
+    if (tried >= most_tried || rivals.is_spent()) break;
     std::vector<const Candidate*> before, now;
     for (size_t m : proposal.removed) before.push_back(members[m].candidate);
     for (const Member& m : proposal.added) now.push_back(m.candidate);
     OtherSet other{without(before, now), without(now, before)};
-    // Which dry friction it is, is seen after reversals.
-    if (is_of_one(other) && is_dry_friction(*other.replaced.front()) && is_dry_friction(*other.by.front()))
-      continue;
-    if (const auto loss = rivals.loss_of(proposal)) other.loss = *loss, list.push_back(std::move(other));
+    // That a member is not needed is known; which dry friction it is, is seen after reversals.
+    const bool is_other_friction =
+        is_of_one(other) && is_dry_friction(*other.replaced.front()) && is_dry_friction(*other.by.front());
+    if (other.by.empty() != other.replaced.empty() || is_other_friction) continue;
+    ++tried;
+    const auto loss = rivals.loss_of(proposal);
+    const bool is_same = other.by.empty();  // with other shapes, which may be better
+    if (loss && !is_same) other.loss = *loss, list.push_back(std::move(other));
   }
   return list;
 }
@@ -120,6 +124,7 @@ void add_laws(const std::vector<OtherSet>& laws, const Candidate& member, double
   for (const OtherSet& law : laws)
     if (is_of_one(law) && law.replaced.front() == &member && law.loss < nothing)
       add_if_closer(substitutes, {law.by.front(), law.loss});
+  std::ranges::stable_sort(substitutes, {}, &Substitute::loss);
 }
 
 void add_laws(const std::vector<OtherSet>& laws, std::vector<OtherSet>& sets) {
@@ -129,6 +134,7 @@ void add_laws(const std::vector<OtherSet>& laws, std::vector<OtherSet>& sets) {
     };
     if (!is_of_one(law) && std::ranges::none_of(sets, is_same)) sets.push_back(law);
   }
+  std::ranges::stable_sort(sets, {}, &OtherSet::loss);
 }
 
 namespace {

@@ -35,6 +35,10 @@ struct CandidateParameter {
 
 struct Member;
 
+/// The variable of which a force without memory is a law. One that a position gives place and that brakes
+/// there too, as an end stop, is a law of the position.
+enum class LawOf { several, position, velocity };
+
 struct Candidate {
   std::string name, form;  ///< form: for an effect with several
   Acts acts = Acts::force;
@@ -50,8 +54,8 @@ struct Candidate {
   bool flies = false;            ///< its force is zero for a while and returns with an impact
   bool is_repeatable = false;    ///< may occur more than once
   bool repeats_in_time = false;  ///< its period is in time, not in position
-  std::string law_of;            ///< "velocity", "position": what its force is a law of, without memory
-  bool is_unknown = false;       ///< not from the catalogue, but any function of the variables in `form`
+  LawOf law_of = LawOf::several;
+  bool is_unknown = false;  ///< not from the catalogue, but any function of the variables in `form`
   /// For several shapes together: cheaper than one after the other.
   std::function<std::vector<Columns>(const Path& path, const std::vector<std::vector<double>>& shapes)>
       columns_at;

@@ -54,16 +54,16 @@ std::vector<double> grid_of(const CandidateParameter& p, bool is_first, int poin
   return grid;
 }
 
-/// A force that also depends on the velocity where a position gives place, as an end stop, is a law of the
-/// position.
-std::string variable_of_law(const Effect& effect) {
-  const auto reads = [&](const char* role) {
-    return std::ranges::find(effect.reads, role) != effect.reads.end();
-  };
-  const bool reads_more = std::ranges::any_of(
-      effect.reads, [](const std::string& role) { return role != "position" && role != "velocity"; });
-  if (reads_more) return "";
-  return reads("position") ? "position" : reads("velocity") ? "velocity" : "";
+LawOf variable_of_law(const Effect& effect) {
+  LawOf of = LawOf::several;
+  for (const std::string& role : effect.reads)
+    if (role == "position")
+      of = LawOf::position;
+    else if (role != "velocity")
+      return LawOf::several;
+    else if (of == LawOf::several)
+      of = LawOf::velocity;
+  return of;
 }
 
 /// The columns used last: fits return to the same path and shape many times.

@@ -192,10 +192,12 @@ std::vector<OtherSet> laws_beside(const Trials& trials, const Estimate& estimate
                                   const std::vector<Candidate>& candidates, Rivals& rivals,
                                   double most_loss) {
   std::vector<OtherSet> laws;
-  for (const char* variable : {"velocity", "position"})
-    std::ranges::move(other_sets_of_laws(rivals, estimate.members,
-                                         other_laws(trials, estimate, candidates, variable, most_loss)),
-                      std::back_inserter(laws));
+  for (const LawOf variable : {LawOf::velocity, LawOf::position})
+    if (!rivals.is_spent())
+      std::ranges::move(
+          other_sets_of_laws(rivals, estimate.members,
+                             other_laws(trials, estimate, candidates, variable, most_loss, rivals.refused())),
+          std::back_inserter(laws));
   return laws;
 }
 

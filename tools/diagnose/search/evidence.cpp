@@ -34,7 +34,8 @@ bool is_feasible(const Shape& shape, const Eigen::VectorXd& theta, Eigen::Index 
   return true;
 }
 
-/// Whether shapes differ by more than the neighbours of a grid.
+}  // namespace
+
 bool is_far(const std::vector<double>& shape, const std::vector<double>& other) {
   for (size_t i = 0; i < shape.size(); ++i) {
     const double ratio = std::abs(shape[i] / other[i]);
@@ -42,8 +43,6 @@ bool is_far(const std::vector<double>& shape, const std::vector<double>& other) 
   }
   return false;
 }
-
-}  // namespace
 
 double left_by(double squares, double of) { return std::max(squares, 1e-12 * of); }
 

@@ -35,6 +35,9 @@ size_t parameters_of(const Candidate& candidate);
 /// n ln(mean square) + ln|S| + cost of the parameters; smaller is better.
 double criterion(const Trials& trials, const Estimate& estimate, size_t catalogue);
 
+/// Whether shapes differ by more than the neighbours of a grid.
+bool is_far(const std::vector<double>& shape, const std::vector<double>& other);
+
 /// Squares that a solution leaves, beyond rounding.
 double left_by(double squares, double of);
 
@@ -66,9 +69,9 @@ class Evidence {
   /// best first.
   std::vector<Proposal> exchanges_for_pairs();
   /// Some members replaced by up to `most` shapes of different candidates: the best for each set of
-  /// candidates, best first, as long as it loses less than `most_loss`, both of a record of `n` fitted
-  /// numbers. Shapes of one candidate follow each other along its grid: what lies between two points is
-  /// nearly a sum of both.
+  /// candidates that does not contain all of theirs, or has theirs with other shapes, best first, as long as
+  /// it loses less than `most_loss`, both of a record of `n` fitted numbers. Shapes of one candidate follow
+  /// each other along its grid: what lies between two points is nearly a sum of both.
   std::vector<Proposal> sets(const std::vector<size_t>& removed, size_t most, double n, double most_loss);
   /// The members without one, with the saving (mostly negative) of a record of `n` fitted numbers.
   std::vector<double> gains_of_removal(double n) const;
@@ -104,24 +107,18 @@ class Evidence {
   };
   std::vector<Promise> best_shapes(const Errors& errors, double n) const;
 
-  /// A shape, or what lies between it and the next one of its candidate.
-  struct Between {
-    size_t shape;
-    bool has_next;
-    auto operator<=>(const Between&) const = default;
-  };
-  struct Set {
-    std::vector<Between> shapes;  ///< ascending
-    double gain = 0;
-  };
-  std::vector<Between> between_points() const;
-  std::vector<std::vector<Between>> extended(const std::vector<Set>& sets,
-                                             const std::vector<Between>& all) const;
-  std::vector<int> columns_of(const std::vector<Between>& set) const;
-  std::vector<Member> members_of(const std::vector<Between>& set, const Eigen::VectorXd& theta) const;
-  std::optional<double> gain_of_set(const std::vector<Between>& set, const Errors& errors, double n) const;
-  Proposal with_step(const Set& set, const Errors& errors) const;
-  std::vector<Proposal> best_of_each(const std::vector<Set>& sets, const Errors& errors) const;
+  struct Piece;
+  struct Set;
+  void multiply_all();
+  std::vector<Piece> pieces() const;
+  std::optional<Member> member_of(const Piece& piece, const double* theta) const;
+  std::optional<Proposal> proposal_of(const std::vector<const Piece*>& set, const Errors& errors,
+                                      double n) const;
+  std::vector<double> step_within_ranges(const std::vector<size_t>& removed,
+                                         const Eigen::VectorXd& amplitudes) const;
+  bool is_another(const std::vector<Member>& added, const std::vector<size_t>& removed) const;
+  std::vector<Set> extended(const std::vector<Set>& sets, const std::vector<Piece>& all, const Errors& errors,
+                            double n) const;
 
   const std::vector<Member> members_;
   const std::vector<const Shape*> shapes_;

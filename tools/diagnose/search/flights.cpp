@@ -1,6 +1,8 @@
 #include "tools/diagnose/search/flights.h"
 #include <algorithm>
 #include <cmath>
+#include "tools/diagnose/criteria.h"
+#include "tools/diagnose/search/whiteness.h"
 
 namespace loopwright::diagnosis {
 namespace {
@@ -8,6 +10,12 @@ namespace {
 constexpr int iterations_in_flight = 4;
 /// A parameter of the contact that is farther from the usual one than by this factor is doubted.
 constexpr double far_from_usual = 1.5;
+
+/// [-2 ln L] Another load must explain so much more.
+constexpr double least_gain_of_other_load = 10;
+/// Of one load to the next that is tried, and how often in one direction.
+constexpr double heavier = 1.6;
+constexpr int most_heavier = 3;
 
 /// All shapes of a load but the first one, the gap, as they usually are; whether one of them was far from it.
 bool begin_anew(Member& load) {
@@ -20,6 +28,31 @@ bool begin_anew(Member& load) {
   return was_far;
 }
 
+/// The same contact with another load.
+void change_load(Member& load, double factor) {
+  for (size_t i = 0; i < load.linear.size(); ++i)
+    load.linear[i] =
+        std::clamp(factor * load.linear[i], load.candidate->linear[i].low, load.candidate->linear[i].high);
+  if (load.nonlinear.size() < 2) return;
+  const CandidateParameter& frequency = load.candidate->nonlinear[1];
+  load.nonlinear[1] = std::clamp(load.nonlinear[1] / std::sqrt(factor), frequency.low, frequency.high);
+}
+
+/// A heavy load on a soft contact and a light one on a hard contact push alike for a while: where the errors
+/// are not white, heavier and lighter ones are tried.
+Estimate with_other_loads(Trials& trials, Estimate best, size_t load) {
+  if (!best.is_valid || portmanteau(trials, *best.fitted) <= 2 * criteria::portmanteau_lags) return best;
+  for (const double factor : {heavier, 1 / heavier})
+    for (int n = 0; n < most_heavier; ++n) {
+      std::vector<Member> members = best.members;
+      change_load(members[load], factor);
+      Estimate other = fit_members(trials, std::move(members), best.noise, best.motion, iterations_in_flight);
+      if (!other.is_valid || other.profile > best.profile - least_gain_of_other_load) break;
+      best = std::move(other);
+    }
+  return best;
+}
+
 }  // namespace
 
 Estimate fitted_in_flight(Trials& trials, Estimate found) {
@@ -27,11 +60,13 @@ Estimate fitted_in_flight(Trials& trials, Estimate found) {
       std::ranges::find_if(found.members, [](const Member& m) { return bool(m.candidate->switched_load); });
   if (flies == found.members.end()) return found;
   std::vector<Member> members = found.members;
-  const bool was_far = begin_anew(members[size_t(flies - found.members.begin())]);
+  const size_t load = size_t(flies - found.members.begin());
+  const bool was_far = begin_anew(members[load]);
   Estimate best = fit_members(trials, found.members, found.noise, found.motion, iterations_in_flight);
-  if (!was_far) return best;
+  if (!was_far) return with_other_loads(trials, std::move(best), load);
   Estimate other = fit_members(trials, std::move(members), found.noise, found.motion, iterations_in_flight);
-  return other.is_valid && (!best.is_valid || other.profile < best.profile) ? other : best;
+  const bool is_better = other.is_valid && (!best.is_valid || other.profile < best.profile);
+  return with_other_loads(trials, std::move(is_better ? other : best), load);
 }
 
 }  // namespace loopwright::diagnosis

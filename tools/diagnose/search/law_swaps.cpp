@@ -15,8 +15,6 @@ struct Term {
   double whole() const { return nominal + change; }
 };
 
-constexpr std::string_view gain_name = "force_gain";
-
 Term term_of(std::string_view name, double nominal, const std::vector<Member>& members,
              const std::vector<Candidate>& candidates) {
   Term term;

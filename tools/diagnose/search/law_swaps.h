@@ -11,6 +11,8 @@ namespace loopwright::diagnosis {
 std::vector<Proposal> law_swaps(const std::vector<Member>& members, const std::vector<Candidate>& candidates,
                                 const Trials& trials);
 
+/// The effect of the catalogue that is a gain.
+constexpr std::string_view gain_name = "force_gain";
 /// Whether a gain is among the members.
 bool has_gain(const std::vector<Member>& members);
 

@@ -6,18 +6,18 @@
 
 namespace loopwright::diagnosis {
 
-/// All members that are laws of a variable ("velocity", "position"), or functions of it without a name,
-/// replaced by other laws of it, best first. None that loses more than `most_loss`. Empty: there are none.
+/// All members that are laws of a variable, or functions of it without a name, replaced by other laws of it,
+/// best first. None that is promised to lose more than `most_loss`, or has a candidate that was refused.
 std::vector<Proposal> other_laws(const Trials& trials, const Estimate& estimate,
-                                 const std::vector<Candidate>& candidates, const std::string& variable,
-                                 double most_loss);
+                                 const std::vector<Candidate>& candidates, LawOf variable, double most_loss,
+                                 const std::vector<const Candidate*>& refused = {});
 
-/// The best of them with noise of its own, if it is better; `trail` receives what was tried.
-std::optional<Estimate> better_laws(Trials& trials, const Estimate& best,
-                                    const std::vector<Candidate>& candidates, const std::string& variable,
-                                    std::vector<std::string>& trail);
+/// All members, with the most promising of them.
+std::vector<std::vector<Member>> with_other_laws(const Trials& trials, const Estimate& estimate,
+                                                 const std::vector<Candidate>& candidates, LawOf variable);
 
 /// Several names for what depends on the velocity alone, if a function without a name explains much more.
+/// `trail` receives what was tried.
 std::optional<Estimate> function_of_velocity(Trials& trials, const Estimate& best,
                                              const std::vector<Candidate>& unknown, size_t catalogue,
                                              std::vector<std::string>& trail);

@@ -44,8 +44,13 @@ std::optional<double> Rivals::loss_of(const Proposal& proposal) {
 }
 
 bool Rivals::is_refuted(const Proposal& p, const Estimate& other) const {
-  return p.removed.size() == 1 && p.added.size() == 1 &&
-         at_reversals_.is_refuted(p.removed[0], *p.added[0].candidate, other);
+  const auto removed = std::ranges::find_if(
+      p.removed, [&](size_t m) { return is_dry_friction(*estimate_.members[m].candidate); });
+  const auto added =
+      std::ranges::find_if(p.added, [](const Member& m) { return is_dry_friction(*m.candidate); });
+  return removed != p.removed.end() && added != p.added.end() &&
+         added->candidate != estimate_.members[*removed].candidate &&
+         at_reversals_.is_refuted(*removed, *added->candidate, other);
 }
 
 bool Rivals::is_promised(const Proposal& proposal, const Estimate& other) const {

@@ -24,6 +24,7 @@ class Rivals {
         refused_(refused) {}
 
   double reach() const { return reach_; }
+  const std::vector<const Candidate*>& refused() const { return refused_; }
   /// No further rival is fitted.
   bool is_spent() const { return trials_.work->is_spent(criteria::work_with_rivals); }
   /// With a proposal applied and all parameters fitted, as long as it may come within reach.
@@ -33,7 +34,8 @@ class Rivals {
   std::optional<double> loss_of(const Proposal& proposal, const Estimate& other,
                                 double most_reaches = 1) const;
   std::optional<double> loss_of(const Proposal& proposal);
-  /// Another law of dry friction, against which the rows after reversals speak.
+  /// Another law of dry friction in place of the one that is there, against which the rows after reversals
+  /// speak.
   bool is_refuted(const Proposal& proposal, const Estimate& other) const;
   /// Whether it is as good on the same motion, and not much worse on its own motion. If the diagram itself
   /// quantizes, for example with an encoder, every run gives a different result.

@@ -1,7 +1,6 @@
 #include "tools/diagnose/search/search.h"
 #include <fmt/format.h>
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <optional>
 #include <ranges>
@@ -19,11 +18,10 @@
 namespace loopwright::diagnosis {
 namespace {
 
-constexpr size_t most_effects = 8;
+constexpr size_t most_effects = 8, tried_extensions = 4, tried_exchanges = 3;
 /// A map shows a motor's lines one by one, and little else. Functions of position without a name, which can
 /// stand for any long line, come after all of them.
 constexpr size_t most_steps_in_a_map = 16;
-constexpr size_t tried_extensions = 4, tried_exchanges = 3;
 
 class Search {
  public:
@@ -47,7 +45,8 @@ class Search {
       goes_on = true;
     }
     if (goes_on) grow(most_effects - std::min(most_effects, best_.members.size()));
-    give_way_to_function_of_velocity();
+    if (auto function = function_of_velocity(trials_, best_, unknown_, candidates_.size(), trail_))
+      take_nameless(std::move(*function));
     return {std::move(best_), std::move(trail_)};
   }
 
@@ -67,13 +66,6 @@ class Search {
   void take(Estimate better) {
     best_ = std::move(better), evidence_.reset();
     leave_out_doubtful(trials_, best_);
-  }
-
-  bool take_pruned(Estimate better, const char* what) {
-    take(std::move(better));
-    note(what);
-    prune();
-    return true;
   }
 
   /// Improvement of the criterion of a trial over the best set, on the same rows.
@@ -223,6 +215,12 @@ class Search {
     return std::ranges::any_of(e.members, [](const Member& m) { return m.candidate->is_unknown; });
   }
 
+  void take_nameless(Estimate better) {
+    take(std::move(better));
+    note("without a name");
+    prune();
+  }
+
   /// And the effects that had substituted for it.
   bool explain_without_name() {
     Estimate best;
@@ -232,7 +230,9 @@ class Search {
       if (!trial.is_valid || score(trial) >= best_score) continue;
       best_score = score(trial), best = std::move(trial);
     }
-    return best.is_valid && take_pruned(std::move(best), "without a name");
+    if (!best.is_valid) return false;
+    take_nameless(std::move(best));
+    return true;
   }
 
   /// Alternative initial sets: the best function of the variables alone, and with one effect.
@@ -271,23 +271,31 @@ class Search {
     note("best of all");
   }
 
-  /// Other laws of one variable, if they do better together.
+  /// Laws of one variable, for others of it that do better together.
   bool exchange_laws() {
     bool any = false;
-    for (const char* variable : {"velocity", "position"}) {
+    for (const LawOf variable : {LawOf::velocity, LawOf::position}) {
       if (is_spent()) return any;
-      std::optional<Estimate> better = better_laws(trials_, best_, candidates_, variable, trail_);
-      any |= better && take_pruned(std::move(*better), "with other laws");
+      double gain = criteria::clearly_better;
+      Estimate better = best_of(with_other_laws(trials_, best_, candidates_, variable), gain);
+      if (!better.is_valid) continue;
+      take(std::move(better)), any = true;
+      note("with other laws");
     }
     return any;
   }
 
-  /// Several names for what depends on the velocity alone.
-  void give_way_to_function_of_velocity() {
-    if (is_spent()) return;
-    std::optional<Estimate> function =
-        function_of_velocity(trials_, best_, unknown_, candidates_.size(), trail_);
-    if (function) take_pruned(std::move(*function), "without a name");
+  /// The best of other sets, without what each does not need, if it gains more than `best_gain`.
+  Estimate best_of(const std::vector<std::vector<Member>>& others, double& best_gain) {
+    Estimate best;
+    for (const std::vector<Member>& members : others) {
+      Estimate trial = pruned(refined(members, 4));
+      const double gain = gain_of(trial);
+      trail_.push_back(fmt::format("tried instead {}: criterion {:+.1f}", names_of(members), -gain));
+      const double preferred = gain + preference(trials_, trial.members, best_.members);
+      if (preferred > best_gain) best_gain = preferred, best = std::move(trial);
+    }
+    return best;
   }
 
   /// A member, or two, for another: also an equally good one, if it makes others unnecessary.
@@ -305,16 +313,8 @@ class Search {
       if (has_gain(best_.members))
         for (const Proposal& swap : law_swaps(best_.members, candidates_, trials_))
           others.push_back(applied(swap, best_.members));
-      Estimate best;
       double best_gain = criteria::clearly_better;
-      for (const std::vector<Member>& members : others) {
-        Estimate trial = pruned(refined(members, 4));
-        const double gain = gain_of(trial);
-        trail_.push_back(fmt::format("tried instead {}: criterion {:+.1f}", names_of(members), -gain));
-        const double preferred = gain + preference(trials_, trial.members, best_.members);
-        if (preferred <= best_gain) continue;
-        best_gain = preferred, best = std::move(trial);
-      }
+      Estimate best = best_of(others, best_gain);
       if (!best.is_valid) return any;
       if (best.members.size() > best_.members.size() && is_surpassed_by_extension(best_gain)) return any;
       take(std::move(best)), any = true;

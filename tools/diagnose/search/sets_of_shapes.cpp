@@ -1,21 +1,18 @@
 /// Evidence for several shapes at once.
 #include <algorithm>
+#include <map>
+#include <set>
 #include "tools/diagnose/search/evidence.h"
 
 namespace loopwright::diagnosis {
 namespace {
 
-/// Sets of one size from which those of the next size are made: a beam search.
-constexpr size_t kept_sets = 100;
+/// Sets from which those of the next size are made: so many sets of candidates, with so many shapes of each.
+constexpr size_t kept_sets = 40, kept_shapes_of_each = 3;
 /// How far outside two points of a grid a shape may lie, in their distance.
 constexpr double outside_points = 0.5;
-
-/// Of the second of two points in a shape that lies between them, by the greatest of its amplitudes.
-double share_of_second(const Eigen::VectorXd& first, const Eigen::VectorXd& second) {
-  Eigen::Index greatest = 0;
-  (first + second).cwiseAbs().maxCoeff(&greatest);
-  return second[greatest] / (first[greatest] + second[greatest]);
-}
+/// [of its squares] Two columns that differ by less are one: an amplitude whose column no shape changes.
+constexpr double same_column = 1e-9;
 
 bool is_within(const CandidateParameter& range, double value) {
   return value >= range.low && value <= range.high;
@@ -23,124 +20,181 @@ bool is_within(const CandidateParameter& range, double value) {
 
 }  // namespace
 
-std::vector<Evidence::Between> Evidence::between_points() const {
-  std::vector<Between> list;
+/// A candidate at a point of its grid, or between that and the next one: what lies there is nearly a sum of
+/// both.
+struct Evidence::Piece {
+  size_t shape;
+  bool has_next;
+  std::vector<int> columns;     ///< of all amplitudes at the point, and of some of them at the next one
+  std::vector<size_t> at_next;  ///< those amplitudes
+
+  double weight_of(size_t amplitude, const Products& G) const {
+    return std::sqrt(G(columns[amplitude], columns[amplitude]));
+  }
+};
+
+void Evidence::multiply_all() {
+  const Eigen::Index own = Eigen::Index(free_.size()), width = G_.cols() - own;
+  G_.bottomRightCorner(width, width).noalias() =
+      X_.middleCols(own, width).transpose() * X_.middleCols(own, width);
+}
+
+std::vector<Evidence::Piece> Evidence::pieces() const {
+  std::vector<Piece> list;
   for (size_t s = 0; s < shapes_.size(); ++s) {
-    const bool is_fixed = shapes_[s]->candidate->nonlinear.empty();
-    const bool has_next = s + 1 < shapes_.size() && shapes_[s + 1]->candidate == shapes_[s]->candidate;
-    if (is_fixed || has_next) list.push_back({s, has_next && !is_fixed});
+    const auto is_same = [&](size_t other) {
+      return other < shapes_.size() && shapes_[other]->candidate == shapes_[s]->candidate;
+    };
+    const bool has_next = is_same(s + 1);
+    if (!has_next && is_same(s - 1)) continue;  // the last point
+    Piece piece{s, has_next, columns_of({s}), {}};
+    for (size_t i = 0; has_next && i < size_t(width_of(s)); ++i) {
+      const int here = first_column_[s] + int(i), there = first_column_[s + 1] + int(i);
+      if (G_(here, here) - 2 * G_(here, there) + G_(there, there) <= same_column * G_(here, here)) continue;
+      piece.columns.push_back(there), piece.at_next.push_back(i);
+    }
+    list.push_back(std::move(piece));
   }
   return list;
 }
 
-/// Sets with one shape more, of another candidate.
-std::vector<std::vector<Evidence::Between>> Evidence::extended(const std::vector<Set>& sets,
-                                                               const std::vector<Between>& all) const {
-  std::vector<std::vector<Between>> result;
-  for (const Set& set : sets)
-    for (const Between& added : all) {
-      const auto is_same = [&](const Between& b) {
-        return shapes_[b.shape]->candidate == shapes_[added.shape]->candidate;
-      };
-      if (std::ranges::any_of(set.shapes, is_same)) continue;
-      result.push_back(set.shapes);
-      result.back().insert(std::ranges::upper_bound(result.back(), added), added);
-    }
-  std::ranges::sort(result);
-  result.erase(std::ranges::unique(result).begin(), result.end());
-  return result;
-}
-
-std::vector<int> Evidence::columns_of(const std::vector<Between>& set) const {
-  std::vector<size_t> shapes;
-  for (const Between& b : set)
-    for (size_t s = b.shape; s <= b.shape + (b.has_next ? 1 : 0); ++s) shapes.push_back(s);
-  return columns_of(shapes);
-}
-
-/// The members that amplitudes of the columns make up; empty: a parameter is outside its range.
-std::vector<Member> Evidence::members_of(const std::vector<Between>& set,
-                                         const Eigen::VectorXd& theta) const {
-  std::vector<Member> members;
-  Eigen::Index at = 0;
-  for (const Between& b : set) {
-    const Candidate& candidate = *shapes_[b.shape]->candidate;
-    const Eigen::Index width = width_of(b.shape);
-    Eigen::VectorXd amplitudes = theta.segment(at, width);
-    Member member{&candidate, {}, shapes_[b.shape]->nonlinear};
-    at += width;
-    if (b.has_next) {
-      const Eigen::VectorXd second = theta.segment(at, width);
-      const double share = share_of_second(amplitudes, second);
-      if (!(share >= -outside_points && share <= 1 + outside_points)) return {};
-      const CandidateParameter& range = candidate.nonlinear.front();
-      const double from = member.nonlinear.front(), to = shapes_[b.shape + 1]->nonlinear.front();
-      const double value = range.logarithmic ? from * std::pow(to / from, share) : std::lerp(from, to, share);
-      member.nonlinear.front() = std::clamp(value, range.low, range.high);
-      amplitudes += second, at += width;
-    }
-    member.linear.assign(amplitudes.begin(), amplitudes.end());
-    for (size_t i = 0; i < member.linear.size(); ++i)
-      if (!is_within(candidate.linear[i], member.linear[i])) return {};
-    members.push_back(std::move(member));
+/// The member that amplitudes of the columns of a piece make up; empty: a parameter is outside its range.
+std::optional<Member> Evidence::member_of(const Piece& piece, const double* theta) const {
+  const Candidate& candidate = *shapes_[piece.shape]->candidate;
+  const size_t width = candidate.linear.size();
+  Member member{&candidate, {theta, theta + width}, shapes_[piece.shape]->nonlinear};
+  double share = 0, most = 0;  // of the next point, by the amplitude that does most
+  for (size_t n = 0; n < piece.at_next.size(); ++n) {
+    double& amplitude = member.linear[piece.at_next[n]];
+    amplitude += theta[width + n];
+    const double weight = std::abs(amplitude) * piece.weight_of(piece.at_next[n], G_);
+    if (weight > most) most = weight, share = theta[width + n] / amplitude;
   }
-  return members;
+  if (!(share >= -outside_points && share <= 1 + outside_points)) return {};
+  if (piece.has_next) {
+    const CandidateParameter& range = candidate.nonlinear.front();
+    const double from = member.nonlinear.front(), to = shapes_[piece.shape + 1]->nonlinear.front();
+    const double value = range.logarithmic ? from * std::pow(to / from, share) : std::lerp(from, to, share);
+    member.nonlinear.front() = std::clamp(value, range.low, range.high);
+  }
+  for (size_t i = 0; i < width; ++i)
+    if (!is_within(candidate.linear[i], member.linear[i])) return {};
+  return member;
 }
 
 /// What a set saves; empty: a parameter is outside its range.
-std::optional<double> Evidence::gain_of_set(const std::vector<Between>& set, const Errors& errors,
-                                            double n) const {
-  const Added added = add(G_, columns_of(set), errors.members, errors.b);
-  if (members_of(set, added.theta).empty()) return {};
+std::optional<Proposal> Evidence::proposal_of(const std::vector<const Piece*>& set, const Errors& errors,
+                                              double n) const {
+  std::vector<int> columns;
   double cost = 0;
-  for (const Between& b : set) cost += price(parameters_of(*shapes_[b.shape]->candidate), 1, n, catalogue_);
-  for (size_t m : errors.removed) cost -= price(parameters_of(*members_[m].candidate), 1, n, catalogue_);
-  return n * std::log(explained_ / left_by(added.squares, errors.squares)) - cost;
-}
-
-Proposal Evidence::with_step(const Set& set, const Errors& errors) const {
-  const Eigen::VectorXd theta = add(G_, columns_of(set.shapes), errors.members, errors.b).theta;
-  const Eigen::VectorXd before = add(G_, columns_of(set.shapes), errors.amplitudes, errors.b).before;
-  return {errors.removed, members_of(set.shapes, theta), step_of(errors.removed, before), set.gain};
-}
-
-/// The best for each set of candidates, without those that contain all that was removed.
-std::vector<Proposal> Evidence::best_of_each(const std::vector<Set>& sets, const Errors& errors) const {
-  std::vector<const Candidate*> present;
-  for (size_t m : errors.removed) present.push_back(members_[m].candidate);
-  std::ranges::sort(present);
-  std::vector<std::vector<const Candidate*>> told;
-  std::vector<Proposal> list;
-  for (const Set& set : sets) {
-    std::vector<const Candidate*> candidates;
-    for (const Between& b : set.shapes) candidates.push_back(shapes_[b.shape]->candidate);
-    std::ranges::sort(candidates);
-    if (std::ranges::find(told, candidates) != told.end() || std::ranges::includes(candidates, present))
-      continue;
-    told.push_back(std::move(candidates));
-    list.push_back(with_step(set, errors));
+  for (const Piece* piece : set) {
+    std::ranges::copy(piece->columns, std::back_inserter(columns));
+    cost += price(parameters_of(*shapes_[piece->shape]->candidate), 1, n, catalogue_);
   }
+  for (size_t m : errors.removed) cost -= price(parameters_of(*members_[m].candidate), 1, n, catalogue_);
+  const double squares = add(G_, columns, errors.members, errors.b).squares;
+  const Added added = add(G_, columns, errors.amplitudes, errors.b);
+  Proposal proposal{errors.removed,
+                    {},
+                    step_within_ranges(errors.removed, added.before),
+                    n * std::log(explained_ / left_by(squares, errors.squares)) - cost};
+  const double* theta = added.theta.data();
+  for (const Piece* piece : set) {
+    std::optional<Member> member = member_of(*piece, theta);
+    if (!member) return {};
+    proposal.added.push_back(std::move(*member));
+    theta += piece->columns.size();
+  }
+  return proposal;
+}
+
+std::vector<double> Evidence::step_within_ranges(const std::vector<size_t>& removed,
+                                                 const Eigen::VectorXd& amplitudes) const {
+  std::vector<double> step = step_of(removed, amplitudes);
+  std::vector<Member> members = members_;
+  size_t next = 0;
+  for (const FreeParameter& p : free_) {
+    if (std::ranges::find(removed, p.member) != removed.end()) continue;
+    const CandidateParameter& range = range_of(members, p);
+    const double value = value_of(members, p);
+    step[next] = std::clamp(value + step[next], range.low, range.high) - value;
+    ++next;
+  }
+  return step;
+}
+
+namespace {
+
+/// The candidates of a set, in one order.
+std::vector<const Candidate*> candidates_of(const std::vector<Member>& members) {
+  std::vector<const Candidate*> list;
+  for (const Member& member : members) list.push_back(member.candidate);
+  std::ranges::sort(list);
   return list;
+}
+
+}  // namespace
+
+/// Whether they are other candidates than those that are removed and more, or the same with other shapes.
+bool Evidence::is_another(const std::vector<Member>& added, const std::vector<size_t>& removed) const {
+  std::vector<Member> present;
+  for (size_t m : removed) present.push_back(members_[m]);
+  const auto before = candidates_of(present), now = candidates_of(added);
+  if (before != now) return !std::ranges::includes(now, before);
+  return std::ranges::any_of(added, [&](const Member& member) {
+    const auto same = std::ranges::find(present, member.candidate, &Member::candidate);
+    return is_far(member.nonlinear, same->nonlinear);
+  });
+}
+
+struct Evidence::Set {
+  std::vector<const Piece*> pieces;  ///< ascending
+  Proposal proposal;
+};
+
+/// Sets with one piece more, of another candidate, best first.
+std::vector<Evidence::Set> Evidence::extended(const std::vector<Set>& sets, const std::vector<Piece>& all,
+                                              const Errors& errors, double n) const {
+  std::vector<Set> result;
+  std::set<std::vector<const Piece*>> seen;
+  for (const Set& set : sets)
+    for (const Piece& added : all) {
+      const auto is_same = [&](const Piece* p) {
+        return shapes_[p->shape]->candidate == shapes_[added.shape]->candidate;
+      };
+      if (std::ranges::any_of(set.pieces, is_same)) continue;
+      std::vector<const Piece*> pieces = set.pieces;
+      pieces.insert(std::ranges::upper_bound(pieces, &added), &added);
+      if (!seen.insert(pieces).second) continue;
+      if (std::optional<Proposal> proposal = proposal_of(pieces, errors, n))
+        result.push_back({std::move(pieces), std::move(*proposal)});
+    }
+  std::ranges::stable_sort(result, std::ranges::greater{}, [](const Set& s) { return s.proposal.gain; });
+  return result;
 }
 
 std::vector<Proposal> Evidence::sets(const std::vector<size_t>& removed, size_t most, double n,
                                      double most_loss) {
-  for (size_t s = 0; s < shapes_.size(); ++s)
-    for (size_t other = 0; other < s; ++other) multiply(s, other);
+  multiply_all();
   const Errors errors = errors_without(removed);
-  const std::vector<Between> points = between_points();
-  std::vector<Set> all, last{{}};
+  const std::vector<Piece> all = pieces();
+  std::vector<Proposal> list;
+  std::vector<Set> last{{}};
   for (size_t size = 0; size < most; ++size) {
-    std::vector<Set> next;
-    for (std::vector<Between>& shapes : extended(last, points))
-      if (const auto gain = gain_of_set(shapes, errors, n)) next.push_back({std::move(shapes), *gain});
-    std::ranges::stable_sort(next, std::ranges::greater{}, &Set::gain);
-    std::ranges::copy_if(next, std::back_inserter(all), [&](const Set& s) { return s.gain > -most_loss; });
-    if (next.size() > kept_sets) next.resize(kept_sets);
-    last = std::move(next);
+    std::vector<Set> next = extended(last, all, errors, n);
+    last.clear();
+    std::map<std::vector<const Candidate*>, size_t> kept;
+    for (Set& set : next) {
+      const auto candidates = candidates_of(set.proposal.added);
+      if (kept.size() >= kept_sets && !kept.contains(candidates)) continue;
+      const bool is_best = kept[candidates]++ == 0;
+      if (is_best && set.proposal.gain > -most_loss && is_another(set.proposal.added, removed))
+        list.push_back(set.proposal);
+      if (kept[candidates] <= kept_shapes_of_each) last.push_back(std::move(set));
+    }
   }
-  std::ranges::stable_sort(all, std::ranges::greater{}, &Set::gain);
-  return best_of_each(all, errors);
+  std::ranges::stable_sort(list, std::ranges::greater{}, &Proposal::gain);
+  return list;
 }
 
 }  // namespace loopwright::diagnosis

@@ -130,9 +130,9 @@ std::vector<Candidate> unknown_forces(const RecordSizes& sizes, bool is_map) {
   const Variable position = each_sample(middle_position), velocity = each_sample(middle_velocity);
   const Variable direction = direction_of(transition_of_direction(sizes));
   Candidate of_velocity = spline("velocity", 24, -top, top, velocity, one);
-  of_velocity.law_of = "velocity";
+  of_velocity.law_of = LawOf::velocity;
   Candidate of_position = spline("position", 60, low, high, position, one);
-  of_position.law_of = "position";
+  of_position.law_of = LawOf::position;
   const Candidate of_direction = spline("position,direction", 24, low, high, position, direction);
   if (is_map) return {of_position, of_direction};
   return {of_position,

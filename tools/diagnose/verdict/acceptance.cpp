@@ -15,6 +15,7 @@ namespace {
 struct Refusal {
   size_t member;
   std::string why;
+  bool is_of_sensor = false;
 };
 
 /// Whether a part of the mass moves by itself. Its motion is not measured, and swings on from window to
@@ -113,7 +114,7 @@ class Judge {
     if (load == found.members.end()) return {};
     const auto sensor = wandering_sensor(trials_, found);
     if (!sensor || sensor->gain <= criteria::least_gain_of_offset) return {};
-    return Refusal{size_t(load - found.members.begin()), described(trials_, *sensor)};
+    return Refusal{size_t(load - found.members.begin()), described(trials_, *sensor), true};
   }
   bool is_late(const Acceptance& state, size_t member) const {
     return is_late_in_slow_balance(trials_, state.conclusion.estimate.members, member);
@@ -248,7 +249,7 @@ Acceptance accept(Conclusion conclusion, Trials& trials, const std::vector<Inver
     if (!refusal) break;
     const Member& member = state.conclusion.estimate.members[refusal->member];
     const std::string name = shown_name(*member.candidate);
-    state.refused.push_back({name, refusal->why, is_blurred(trials, member)});
+    state.refused.push_back({name, refusal->why, refusal->is_of_sensor, is_blurred(trials, member)});
     std::vector<std::string> trail = state.conclusion.trail;
     trail.push_back(name + ": " + refusal->why);
     state.conclusion = without(state.conclusion, refusal->member);

@@ -7,6 +7,7 @@
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/doubt.h"
 #include "tools/diagnose/search/wandering_sensor.h"
+#include "tools/diagnose/verdict/cancelling_effects.h"
 #include "tools/diagnose/verdict/remainder_interval.h"
 
 namespace loopwright::diagnosis {
@@ -98,17 +99,6 @@ bool is_made_by_counts(const Trials& trials, const Conclusion& conclusion, const
          left * left - floor * floor < std::pow(criteria::least_excess * trials.force_rms, 2);
 }
 
-/// Whether laws of the input leave next to nothing of it.
-bool is_input_taken_away(const Trials& trials, const std::vector<Fitted>& fitted) {
-  double recorded = 0, left = 0;
-  for (size_t t = 0; t < fitted.size(); ++t) {
-    const std::vector<double>& kept = fitted[t].prediction.path.input;  // of the fitted rows
-    for (size_t k = 0; k < kept.size(); ++k)
-      recorded += trials.list[t].input[k] * trials.list[t].input[k], left += kept[k] * kept[k];
-  }
-  return left < std::pow(criteria::least_input_left, 2) * recorded;
-}
-
 }  // namespace
 
 void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, const Noise& tight,
@@ -128,12 +118,14 @@ void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, c
     diagnosis.contradictions.push_back(std::move(why));
   else if (why = force_far_above_noise(trials, e.members, inverse, diagnosis); !why.empty())
     diagnosis.contradictions.push_back(std::move(why));
+  for (const RefusedEffect& refused : diagnosis.refused)
+    if (refused.is_of_sensor)
+      diagnosis.contradictions.push_back(
+          fmt::format("what resembles {} is not in the diagram: {}", refused.effect, refused.why));
   if (!std::isfinite(diagnosis.mean_square))
     diagnosis.contradictions.push_back("the errors of the predictions could not be judged");
-  if (is_input_taken_away(trials, *e.fitted))
-    diagnosis.contradictions.push_back(
-        "what is named takes nearly all of the input away: see that sensor and drive were on, and that time "
-        "and input have the units that are stated");
+  for (std::string why : {why_input_is_taken_away(trials, e), why_effects_cancel(diagnosis)})
+    if (!why.empty()) diagnosis.contradictions.push_back(std::move(why));
   if (diagnosis.simulation_diverged)
     diagnosis.contradictions.push_back("the diagram with these effects diverges when it is simulated");
   else if (diagnosis.simulation_is_worse)
