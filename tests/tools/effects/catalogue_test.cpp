@@ -7,6 +7,15 @@
 
 namespace loopwright::catalogue_test {
 
+/// Without a word nothing would be looked for.
+TEST(Catalogue, AFolderWithoutEffectsIsAnError) {
+  DiagramFolder folder;
+  folder.with("notes.txt", "none here");
+  Problems problems;
+  load_catalogue({std::filesystem::path(folder.path("notes.txt")).parent_path().string()}, problems);
+  EXPECT_THAT(problems.text(), testing::HasSubstr("contains none"));
+}
+
 TEST(Catalogue, HoldsTheEffectsByTheirNames) {
   std::set<std::string> names;
   for (const Effect& effect : whole_catalogue()) names.insert(effect.name);

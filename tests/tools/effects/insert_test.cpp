@@ -200,6 +200,31 @@ TEST(Insertion, WhatCanBeSetAfterwardsIsNamed) {
       << insertion->text;
 }
 
+/// The diagram has no parameters of these names.
+TEST(Insertion, AFormulaTakesTheParametersOfTheEffectAlong) {
+  DiagramFolder folder;
+  folder.with("power.json",
+              R"({"loopwright": 1, "effect": "power", "title": "Power law", "physics": "A test.",
+  "parameters": {
+    "level": {"unit": "$force", "linear": true, "range": [0, "=3*force_level"], "start": "=0.1*force_level"},
+    "exponent": {"unit": "1", "range": [0.5, 3], "start": 1.5},
+    "reference": {"unit": "$position/s", "value": "=top_speed"}},
+  "blocks": {"law": {"type": "Expression", "formula": "level*share*sign(v)*abs(v/reference)^exponent", "names": ["v"],
+             "constants": [{"name": "share", "value": 0.5}], "in": {"arguments": ["velocity"]}}},
+  "attach": [{"to": "force", "from": "law.y"}], "needs": {"text": "many speeds"}})");
+  Problems problems;
+  const std::vector<Effect> effects = load_effect(folder.path("power.json"), problems);
+  ASSERT_EQ(effects.size(), 1u) << problems.text();
+  const auto insertion =
+      insert_effect(nominal(), nominal_axis, effects[0], {0.3, 1.5}, axis_sizes(), problems);
+  ASSERT_TRUE(insertion) << problems.text();
+  EXPECT_TRUE(has(insertion->text, R"({"name": "level", "value": 0.3, "unit": "N"})")) << insertion->text;
+  EXPECT_TRUE(has(insertion->text, R"({"name": "share", "value": 0.5})")) << insertion->text;
+  EXPECT_EQ(run_text(insertion->text, nominal()->name).status, RunStatus::finished);
+  const std::pair<std::string, std::string> exponent{"exponent", "axis.power.constants.2.value"};
+  EXPECT_NE(std::ranges::find(insertion->settings, exponent), insertion->settings.end());
+}
+
 TEST(Insertion, ForAnotherFolderPathsStillLeadToTheirFiles) {
   DiagramFolder folder;
   const std::string text = moved_to_folder(*nominal(), folder.path("deep/er"));

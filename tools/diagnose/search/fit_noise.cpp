@@ -91,6 +91,18 @@ bool is_slow_force_noise(const Noise& noise) {
          slow * slow * samples_alike(noise) <= criteria::most_slow_density;
 }
 
+/// As much white noise as a slow force has beside it that is noise. A sensor's noise can hide how much there
+/// is: the likelihood is flat then. Empty: it predicts worse.
+std::optional<Noise> with_louder_white(const Trials& trials, const std::vector<Fitted>& fitted,
+                                       const Noise& noise) {
+  Noise louder = noise;
+  louder.white = noise.slow() / criteria::most_slow_noise;
+  std::vector<double> error;
+  const double lost =
+      noise_misfit(trials, fitted, louder, error) - noise_misfit(trials, fitted, noise, error);
+  return lost < criteria::most_lost_as_white ? std::optional(louder) : std::nullopt;
+}
+
 /// All of a slow force counted as white noise that does as much to a slow motion. Empty: it predicts worse.
 std::optional<Noise> as_white(const Trials& trials, const std::vector<Fitted>& fitted, const Noise& noise) {
   Noise white = noise;
@@ -133,7 +145,8 @@ bool is_soon_forgotten(const Noise& noise) { return noise.memory_samples() < cri
 
 bool is_remainder_noise(const Trials& trials, const std::vector<Fitted>& fitted, const Noise& start) {
   const Noise noise = fit_noise(trials, fitted, start, FreeNoise::all);
-  return is_slow_force_noise(noise) || as_white(trials, fitted, noise);
+  return is_slow_force_noise(noise) || with_louder_white(trials, fitted, noise) ||
+         as_white(trials, fitted, noise);
 }
 
 Noise fit_noise_alone(const Trials& trials, const std::vector<Fitted>& fitted, const Noise& start,
@@ -144,6 +157,7 @@ Noise fit_noise_alone(const Trials& trials, const std::vector<Fitted>& fitted, c
       std::max(from.step, criteria::usual_slow_noise * from.white * std::sqrt(1 - from.memory * from.memory));
   Noise noise = fit_noise(trials, fitted, from, free);
   if (is_slow_force_noise(noise)) return noise;
+  if (const auto louder = with_louder_white(trials, fitted, noise)) return *louder;
   if (const auto white = as_white(trials, fitted, noise)) return *white;
   noise.white = std::hypot(noise.white, noise.slow());
   noise.step = criteria::next_to_no_slow_noise * noise.white * std::sqrt(1 - noise.memory * noise.memory);

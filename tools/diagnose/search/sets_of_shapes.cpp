@@ -179,6 +179,7 @@ std::vector<Proposal> Evidence::sets(const std::vector<size_t>& removed, size_t 
   const Errors errors = errors_without(removed);
   const std::vector<Piece> all = pieces();
   std::vector<Proposal> list;
+  std::set<std::vector<const Candidate*>> told;
   std::vector<Set> last{{}};
   for (size_t size = 0; size < most; ++size) {
     std::vector<Set> next = extended(last, all, errors, n);
@@ -187,10 +188,10 @@ std::vector<Proposal> Evidence::sets(const std::vector<size_t>& removed, size_t 
     for (Set& set : next) {
       const auto candidates = candidates_of(set.proposal.added);
       if (kept.size() >= kept_sets && !kept.contains(candidates)) continue;
-      const bool is_best = kept[candidates]++ == 0;
-      if (is_best && set.proposal.gain > -most_loss && is_another(set.proposal.added, removed))
+      if (set.proposal.gain > -most_loss && is_another(set.proposal.added, removed) &&
+          told.insert(candidates).second)
         list.push_back(set.proposal);
-      if (kept[candidates] <= kept_shapes_of_each) last.push_back(std::move(set));
+      if (kept[candidates]++ < kept_shapes_of_each) last.push_back(std::move(set));
     }
   }
   std::ranges::stable_sort(list, std::ranges::greater{}, &Proposal::gain);
