@@ -19,7 +19,7 @@ FlawedMachine machine(double wander, uint64_t seed) {
 /// Beside the nominal diagram.
 WanderingSensor found_with(const FlawedMachine& m) {
   const FlawedAxis axis(m);
-  Motion motion;
+  diagnosis::Motion motion;
   Trials trials = prepare(axis.diagram(), {axis.experiment()}, {}, motion);
   const Estimate nominal =
       with_own_noise(trials, fit_members(trials, {}, search_noise(trials), motion, 0), 0);
