@@ -30,6 +30,21 @@ TEST(CancellingEffects, UsualSetsAreNot) {
       << "by one factor with the mass";
 }
 
+/// Without roles: a Stribeck curve of which the record sees no end is a square.
+TEST(CancellingEffects, LevelsOfOneLawAreTold) {
+  DiagnosedEffect effect;
+  effect.name = "stribeck", effect.site_unit = "N*m", effect.force_rms = 0.07;
+  const auto level = [](const char* name, double value) {
+    DiagnosedParameter p;
+    p.name = name, p.unit = "N*m", p.value = value;
+    return p;
+  };
+  effect.parameters = {level("sliding_level", -1.46), level("breakaway_excess", 1.43)};
+  EXPECT_THAT(diagnosis::why_levels_cancel(effect), HasSubstr("sliding_level and breakaway_excess"));
+  effect.parameters = {level("sliding_level", 0.06), level("breakaway_excess", 1.43)};
+  EXPECT_EQ(diagnosis::why_levels_cancel(effect), "") << "a short peak";
+}
+
 /// A strong saturation and a tenth of the mass stand for dry friction that differs between two records.
 TEST(CancellingEffects, FrictionOfTwoRecordsIsNoSaturation) {
   HiddenAxis axis(HiddenMachine{});

@@ -221,7 +221,7 @@ TEST(Insertion, AFormulaTakesTheParametersOfTheEffectAlong) {
   EXPECT_TRUE(has(insertion->text, R"({"name": "level", "value": 0.3, "unit": "N"})")) << insertion->text;
   EXPECT_TRUE(has(insertion->text, R"({"name": "share", "value": 0.5})")) << insertion->text;
   EXPECT_EQ(run_text(insertion->text, nominal()->name).status, RunStatus::finished);
-  const std::pair<std::string, std::string> exponent{"exponent", "axis.power.constants.2.value"};
+  const std::pair<std::string, std::string> exponent{"exponent", "axis.power.constants.3.value"};
   EXPECT_NE(std::ranges::find(insertion->settings, exponent), insertion->settings.end());
 }
 

@@ -15,18 +15,19 @@ bool is_law_of(const Candidate& candidate, LawOf variable) {
   return candidate.law_of == variable || (variable == LawOf::velocity && is_dry_friction(candidate));
 }
 
-/// At most this many points of a grid, with one between two of them where they are fewer than half.
-constexpr size_t most_points = 32;
+/// Of a grid, and of those of all laws: the time for a set grows with the square.
+constexpr size_t most_points = 32, most_points_of_all = 640;
 
-std::vector<std::vector<double>> points_of(const Candidate& candidate) {
+/// At most so many points of a grid, with one between two of them where they are fewer than half.
+std::vector<std::vector<double>> points_of(const Candidate& candidate, size_t most) {
   if (candidate.nonlinear.empty()) return {{}};
   const CandidateParameter& parameter = candidate.nonlinear.front();
   const std::vector<double>& grid = parameter.grid;
-  const size_t every = (grid.size() + most_points - 1) / most_points;
+  const size_t every = (grid.size() + most - 1) / most;
   std::vector<std::vector<double>> points;
   for (size_t i = 0; i < grid.size(); i += every) {
     points.push_back({grid[i]});
-    if (2 * grid.size() > most_points || i + 1 == grid.size()) continue;
+    if (2 * grid.size() > most || i + 1 == grid.size()) continue;
     points.push_back(
         {parameter.logarithmic ? std::sqrt(grid[i] * grid[i + 1]) : std::midpoint(grid[i], grid[i + 1])});
   }
@@ -35,10 +36,14 @@ std::vector<std::vector<double>> points_of(const Candidate& candidate) {
 
 std::vector<Shape> shapes_of_laws(const std::vector<Candidate>& candidates, LawOf variable,
                                   const Motion& motion, const std::vector<const Candidate*>& refused) {
-  std::vector<Shape> shapes;
+  std::vector<const Candidate*> laws;
   for (const Candidate& candidate : candidates)
     if (is_law_of(candidate, variable) && std::ranges::find(refused, &candidate) == refused.end())
-      add_shapes(candidate, points_of(candidate), motion, shapes);
+      laws.push_back(&candidate);
+  const size_t most =
+      std::clamp<size_t>(most_points_of_all / std::max<size_t>(laws.size(), 1), 2, most_points);
+  std::vector<Shape> shapes;
+  for (const Candidate* law : laws) add_shapes(*law, points_of(*law, most), motion, shapes);
   return shapes;
 }
 
@@ -55,6 +60,7 @@ std::vector<Proposal> other_laws(const Trials& trials, const Estimate& estimate,
   std::vector<const Shape*> all;
   for (const Shape& shape : shapes) all.push_back(&shape);
   Evidence evidence(trials, estimate, all, candidates.size());
+  trials.work->add(size_t(evidence.rows()), double(all.size() * all.size()) * Work::of_a_product);
   return evidence.sets(laws, most_laws, double(fitted_numbers(trials)), most_loss);
 }
 

@@ -1,5 +1,6 @@
 #include "tools/diagnose/verdict/cancelling_effects.h"
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <algorithm>
 #include <cmath>
 #include "tools/diagnose/criteria.h"
@@ -30,6 +31,16 @@ std::string why_effects_cancel(const Diagnosis& diagnosis) {
           "the effects cancel each other: the force of {} alone is {:.1f} times the force that is missing",
           effect.name, effect.force_rms / missing);
   return {};
+}
+
+std::string why_levels_cancel(const DiagnosedEffect& effect) {
+  std::vector<std::string> names;
+  for (const DiagnosedParameter& p : effect.parameters)
+    if (p.unit == effect.site_unit && std::abs(p.value) > criteria::most_cancelled * effect.force_rms)
+      names.push_back(p.name);
+  if (names.size() < 2) return {};
+  return fmt::format("{} of {} cancel each other: both are more than {:g} times what the law does",
+                     fmt::join(names, " and "), effect.name, criteria::most_cancelled);
 }
 
 std::string why_input_is_taken_away(const Trials& trials, const Estimate& estimate) {

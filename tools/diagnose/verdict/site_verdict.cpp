@@ -7,9 +7,11 @@
 #include "tools/diagnose/search/site_disturbance.h"
 #include "tools/diagnose/search/site_size.h"
 #include "tools/diagnose/search/stacked_names.h"
+#include "tools/diagnose/verdict/cancelling_effects.h"
 #include "tools/diagnose/verdict/site_opinion_text.h"
 #include "tools/diagnose/wording.h"
 #include "tools/diagnose/verdict/alike_sites.h"
+#include "tools/diagnose/verdict/cancelling_effects.h"
 #include "tools/diagnose/verdict/followed_signal.h"
 #include "tools/diagnose/verdict/held_out_terms.h"
 #include "tools/diagnose/verdict/site_additions.h"
@@ -255,6 +257,9 @@ class Telling {
       size_t told = 0, all = 0;
       for (const DiagnosedParameter& p : result_.effects[t].parameters)
         if (std::ranges::find(names, p.name) != names.end()) ++all, told += p.low > 0 || p.high < 0;
+      if (std::string why = why_levels_cancel(result_.effects[t]); !why.empty())
+        is_any = true,
+        result_.findings.push_back({std::move(why), "it stands for a law of another name", true, false});
       if (all == 0 || told > 0) continue;
       is_any = true;
       result_.findings.push_back({fmt::format("the intervals of all coefficients of {} contain zero",
