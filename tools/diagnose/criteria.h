@@ -334,10 +334,11 @@ constexpr double most_over_floor = 1.25, far_over_noise = 5, far_over_noise_besi
 /// [input, rms] Of which something must be left: laws that take away nearly all of it follow a machine that
 /// does not answer, because its sensor is dead, its drive off, or its time has another unit.
 constexpr double least_input_left = 0.02;
-/// [input, rms] The same for saturations and dead bands, which beside a smaller mass stand for anything at one
-/// speed. A drive that saturates that much follows nothing.
+/// [input, rms] The same for saturations and dead bands, which beside a smaller mass stand for anything at
+/// one speed. A drive that saturates that much follows nothing.
 constexpr double least_input_left_by_law = 0.3;
-/// [force that is missing, rms] An effect of a set makes no more, unless others cancel it: right ones up to 1.7.
+/// [force that is missing, rms] An effect of a set makes no more, unless others cancel it: right ones up
+/// to 1.7.
 constexpr double most_cancelled = 3;
 /// [numbers] Smooth functions of the motion and lines, as compare fits them, have so many levels. They follow
 /// that share of the noise of a record that has one independent value in each memory of the slow force.

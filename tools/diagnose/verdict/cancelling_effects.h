@@ -9,8 +9,8 @@ namespace loopwright::diagnosis {
 /// gain may, with the mass and the damping that it changes by one factor.
 std::string why_effects_cancel(const Diagnosis& diagnosis);
 
-/// Why a law is not believed of which two levels, in the unit of the site, are much larger than what it does: a
-/// fall of friction over more than the speeds of the record is another law. Empty: they are not.
+/// Why a law is not believed: two of its levels, in the unit of the site, are much larger than what it does.
+/// Friction that falls over more than the speeds of the record is another law. Empty: they are not.
 std::string why_levels_cancel(const DiagnosedEffect& effect);
 
 /// Why laws of the input are not believed: they leave too little of it, beside the factor that a gain states.
