@@ -27,6 +27,14 @@ double unexplained(double portmanteau) {
                     criteria::most_portmanteau_of_search);
 }
 
+/// The same beside what the counts of the sensor make of it.
+double unexplained_beside_counts(const Trials& trials, const Estimate& estimate) {
+  const double all = portmanteau(trials, *estimate.fitted);
+  if (all <= most_portmanteau_of_counted) return unexplained(all);
+  const WhitenedErrors counted = errors_of_counts(trials, estimate);
+  return unexplained(counted.empty() ? all : all - reach_of_counts * portmanteau_of_counts(trials, counted));
+}
+
 /// Whether one candidate replaces the same member.
 bool contains(const std::vector<Proposal>& list, const Proposal& proposal) {
   return std::ranges::any_of(list, [&](const Proposal& p) {
@@ -138,7 +146,7 @@ void keep_material(Trials& trials, Conclusion& result, size_t catalogue) {
     if (least >= 1) {
       maximise(trials, without);
       const double doubt =
-          is_late_member(estimate.members[weakest]) ? unexplained(portmanteau(trials, *estimate.fitted)) : 0;
+          is_late_member(estimate.members[weakest]) ? unexplained_beside_counts(trials, estimate) : 0;
       if (criterion(trials, without, catalogue) > criterion(trials, estimate, catalogue) + doubt) return;
     }
     const Weight& weight = result.weights[weakest];
