@@ -157,8 +157,8 @@ Noise fit_noise_alone(const Trials& trials, const std::vector<Fitted>& fitted, c
       std::max(from.step, criteria::usual_slow_noise * from.white * std::sqrt(1 - from.memory * from.memory));
   Noise noise = fit_noise(trials, fitted, from, free);
   if (is_slow_force_noise(noise)) return noise;
-  if (const auto louder = with_louder_white(trials, fitted, noise)) return *louder;
   if (const auto white = as_white(trials, fitted, noise)) return *white;
+  if (const auto louder = with_louder_white(trials, fitted, noise)) return *louder;
   noise.white = std::hypot(noise.white, noise.slow());
   noise.step = criteria::next_to_no_slow_noise * noise.white * std::sqrt(1 - noise.memory * noise.memory);
   return noise;

@@ -45,15 +45,17 @@ std::string why_levels_cancel(const DiagnosedEffect& effect) {
 
 std::string why_input_is_taken_away(const Trials& trials, const Estimate& estimate) {
   double factor = 1;
-  bool has_other_law = false;
+  bool has_other_law = false, is_late = false;  // a lag takes noise of the input away
   for (const Member& member : estimate.members)
     if (member.candidate->name == gain_name)
       factor *= std::abs(1 + member.linear.front());
+    else if (is_late_member(member))
+      is_late = true;
     else
       has_other_law |= member.candidate->acts == Acts::input;
   const double left = left_of_input(trials, *estimate.fitted);
   const bool is_taken = left < criteria::least_input_left ||
-                        (has_other_law && left < criteria::least_input_left_by_law * factor);
+                        (has_other_law && !is_late && left < criteria::least_input_left_by_law * factor);
   if (!is_taken) return {};
   return "what is named takes nearly all of the input away: see that sensor and drive were on, and that time "
          "and input have the units that are stated";
