@@ -38,8 +38,8 @@ void change_load(Member& load, double factor) {
   load.nonlinear[1] = std::clamp(load.nonlinear[1] / std::sqrt(factor), frequency.low, frequency.high);
 }
 
-/// A heavier and a lighter load on the same flank push alike for a moment: where the errors are not white, both
-/// are tried.
+/// A heavier and a lighter load on the same flank push alike for a moment: where the errors are not white,
+/// both are tried.
 Estimate with_other_loads(Trials& trials, Estimate best, size_t load) {
   if (!best.is_valid || portmanteau(trials, *best.fitted) <= 2 * criteria::portmanteau_lags) return best;
   for (const double factor : {heavier, 1 / heavier})
