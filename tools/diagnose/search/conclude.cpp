@@ -68,6 +68,8 @@ std::optional<Estimate> same_law_by_fewer(Trials& trials, Rivals& rivals, const 
   for (const Proposal& swap : law_swaps(members, candidates, trials)) {
     if (rivals.is_spent()) return {};
     Estimate other = rivals.fitted(swap);
+    // A change so large needs more steps than a rival, and noise of its own.
+    if (other.is_valid && !rivals.loss_of(swap, other, reach_of_same_law)) maximise(trials, other);
     // Beside no noise the arithmetic of a law decides how well it predicts.
     const bool leaves_nothing = other.is_valid && is_negligible(trials, other.members);
     if (!leaves_nothing && !rivals.loss_of(swap, other, reach_of_same_law)) continue;
