@@ -81,8 +81,7 @@ struct NotLookedFor {
 /// An effect that the prediction errors asked for, but that does not stand.
 struct RefusedEffect {
   std::string effect, why;
-  bool is_of_sensor =
-      false;  ///< a sensor explains better what it stood for, which the diagram does not contain
+  bool is_of_sensor = false;  ///< errors of a sensor that the diagram does not contain explain more
   bool is_blurred = false;  ///< late by a few rows, each of which stands for several: nothing is left of it
 };
 
