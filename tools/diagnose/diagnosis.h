@@ -82,7 +82,7 @@ struct NotLookedFor {
 struct RefusedEffect {
   std::string effect, why;
   bool is_of_sensor = false;  ///< errors of a sensor that the diagram does not contain explain more
-  bool is_blurred = false;  ///< late by a few rows, each of which stands for several: nothing is left of it
+  bool is_blurred = false;    ///< late by a few rows, each of which stands for several: nothing is left of it
 };
 
 /// An effect that the records show with certainty, and that is too small to matter.
