@@ -5,36 +5,43 @@
 #include <random>
 #include "tests/engine/diagram/diagram_folder.h"
 #include "tests/tools/diagnose/diagnosed.h"
+#include "tools/diagnose/search/prepare.h"
 
 namespace loopwright::slow_noise_test {
 namespace {
 
 /// 0.5 kg with 7 N s/m at 200 Hz. A slow force of 18 ms is larger than the white one, which is small at this
 /// rate; its density at zero frequency is nine times that of the white one.
-std::string record() {
-  constexpr double sample_time = 5e-3, mass = 0.5, damping = 7, white = 0.03, slow = 0.033, time = 0.018,
-                   count = 1.5e-7;
+struct NoisyMachine {
+  double sample_time = 5e-3, white = 0.03, slow = 0.033, time = 0.018, sensor_noise = 0;
+  int rows = 2000;
+};
+
+std::string record(const NoisyMachine& machine) {
+  constexpr double mass = 0.5, damping = 7, count = 1.5e-7;
   constexpr int substeps = 100;
   std::mt19937_64 random(4);
   std::normal_distribution<double> normal(0, 1);
-  const double memory = std::exp(-sample_time / time);
+  const double memory = std::exp(-machine.sample_time / machine.time);
   std::string text = "t,u [N],x [m]\n";
   double x = 0, v = 0, drift = 0;
-  for (int k = 0; k < 2000; ++k) {
-    const double t = k * sample_time, u = 2 * std::sin(2.1 * t) + 1.5 * std::sin(7.3 * t) + std::sin(19 * t);
-    text += fmt::format("{:.6g},{:.12g},{:.12g}\n", t, u, count * std::round(x / count));
-    drift = memory * drift + slow * std::sqrt(1 - memory * memory) * normal(random);
-    const double disturbance = white * normal(random) + drift;
+  for (int k = 0; k < machine.rows; ++k) {
+    const double t = k * machine.sample_time;
+    const double u = 2 * std::sin(2.1 * t) + 1.5 * std::sin(7.3 * t) + std::sin(19 * t);
+    const double read = x + machine.sensor_noise * normal(random);
+    text += fmt::format("{:.6g},{:.12g},{:.12g}\n", t, u, count * std::round(read / count));
+    drift = memory * drift + machine.slow * std::sqrt(1 - memory * memory) * normal(random);
+    const double disturbance = machine.white * normal(random) + drift;
     for (int i = 0; i < substeps; ++i) {  // semi-implicit Euler
-      const double h = sample_time / substeps;
+      const double h = machine.sample_time / substeps;
       v += h * (u - damping * v + disturbance) / mass, x += h * v;
     }
   }
   return text;
 }
 
-TEST(SlowNoise, ThatIsForgottenWithinAFewSamplesIsNoise) {
-  DiagramFolder folder;
+/// axis.json, record.csv and e.json.
+void write(const NoisyMachine& machine, DiagramFolder& folder) {
   folder.with("axis.json",
               R"({"loopwright": 1, "solver": {"method": "rk4", "step": 0.001, "stop": 10}, "blocks": {
  "u":     {"type": "Constant", "value": {"value": 0, "unit": "N"}},
@@ -42,14 +49,54 @@ TEST(SlowNoise, ThatIsForgottenWithinAFewSamplesIsNoise) {
  "vis":   {"type": "ViscousFriction", "damping": {"value": 7, "unit": "N*s/m"}, "in": {"velocity": "m.velocity"}},
  "net":   {"type": "Sum", "signs": "+-", "in": {"terms": ["drive.y", "vis.force"]}},
  "m":     {"type": "Mass", "mass": {"value": 0.5, "unit": "kg"}, "in": {"force": "net.sum"}}}})");
-  folder.with("record.csv", record());
+  folder.with("record.csv", record(machine));
   folder.with("e.json",
               R"({"loopwright": 1, "data": "record.csv", "time": "t", "drive": {"drive.u": {"column": "u"}},
  "compare": {"m.position": {"column": "x", "resolution": "1.5e-7 m"}},
  "roles": {"position": "m.position", "velocity": "m.velocity", "force": "net.sum", "input": "drive.u"}})");
+}
+
+TEST(SlowNoise, ThatIsForgottenWithinAFewSamplesIsNoise) {
+  DiagramFolder folder;
+  write({}, folder);
   const Diagnosis found = diagnose(folder.path("axis.json"), {folder.path("e.json")}, {});
   EXPECT_EQ(found.verdict, Verdict::nothing_missing) << to_text(found);
   EXPECT_NEAR(found.slow_force, 0.033, 0.007);
+}
+
+/// Whether what the nominal diagram leaves of a record counts as noise, and how large a slow force is found.
+struct Remainder {
+  bool is_noise;
+  double slow_force;
+};
+
+Remainder remainder_of(const NoisyMachine& machine) {
+  using namespace diagnosis;
+  DiagramFolder folder;
+  write(machine, folder);
+  Motion motion;
+  Trials trials = prepare(folder.path("axis.json"), {folder.path("e.json")}, {}, motion);
+  trials.run_along(Trials::Rows::fitted);
+  motion = cut(motion, trials);
+  const Estimate estimate = fit_members(trials, {}, search_noise(trials), motion, 0);
+  return {is_remainder_noise(trials, *estimate.fitted, estimate.noise),
+          fit_noise_alone(trials, *estimate.fitted, estimate.noise, FreeNoise::all).slow()};
+}
+
+/// A sensor's noise hides how much white noise a slow force has beside it: the likelihood is flat then, and
+/// its maximum may be where there is none. What that slow force is cannot be told from noise.
+TEST(SlowNoise, BesideWhiteNoiseThatASensorHidesIsNoise) {
+  const NoisyMachine hidden{
+      .sample_time = 1e-3, .white = 0.02, .slow = 0.03, .time = 0.3, .sensor_noise = 1e-5, .rows = 10000};
+  const Remainder remainder = remainder_of(hidden);
+  EXPECT_TRUE(remainder.is_noise);
+  EXPECT_NEAR(remainder.slow_force, 0.03, 0.01);
+}
+/// With a sensor that shows it, the same force is something that the model lacks.
+TEST(SlowNoise, FarAboveWhiteNoiseThatIsSeenIsNone) {
+  const NoisyMachine seen{
+      .sample_time = 1e-3, .white = 0.001, .slow = 0.03, .time = 0.3, .sensor_noise = 0, .rows = 10000};
+  EXPECT_FALSE(remainder_of(seen).is_noise);
 }
 
 }  // namespace
