@@ -8,6 +8,7 @@
 #include "tools/diagnose/search/catalogue.h"
 #include "tools/diagnose/search/conclude.h"
 #include "tools/diagnose/search/doubt.h"
+#include "tools/diagnose/search/friction_at_reversals.h"
 #include "tools/diagnose/search/leaps_of_input.h"
 #include "tools/diagnose/search/noisy_input.h"
 #include "tools/diagnose/search/remaining_force.h"
@@ -78,12 +79,13 @@ class Inquiry {
       : trials_(trials),
         motion_(motion),
         catalogue_(catalogue),
-        unknown_(unknown_forces(sizes, trials.has_map())),
+        unknown_(unknown_forces(sizes, trials.has_map(), trials.has_mass())),
         progress_(progress) {}
 
   /// From the fitted rows. `before`: what was concluded from fewer of them, and is kept where no work is
   /// left.
   Conclusion with_names(const Conclusion* before = nullptr) {
+    forget_reversals(trials_);
     const std::vector<Shape>& shapes = shapes_along_fitted_rows();
     progress_("searching", 0.4);
     SearchResult searched = before && trials_.work->is_spent(criteria::work_of_search)
@@ -98,13 +100,16 @@ class Inquiry {
   }
   Conclusion without_names() {
     const std::vector<Shape>& shapes = shapes_along_fitted_rows();
+    std::vector<const Candidate*> all;
+    for (const Candidate& candidate : catalogue_.candidates) all.push_back(&candidate);
     Conclusion conclusion = conclude(trials_, catalogue_.candidates, shapes,
-                                     fit_members(trials_, {}, search_noise(trials_), fitted_motion_, 0));
+                                     fit_members(trials_, {}, search_noise(trials_), fitted_motion_, 0), all);
     look_at_all_rows(conclusion);
     return conclusion;
   }
   /// The same without a member, which is refused from now on. What was found beside it may have needed it.
   Conclusion without(const Conclusion& conclusion, size_t member) {
+    forget_reversals(trials_);
     const std::vector<Shape>& shapes = shapes_along_fitted_rows();
     const Estimate& e = conclusion.estimate;
     refused_.push_back(e.members[member].candidate);

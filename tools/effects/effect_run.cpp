@@ -317,7 +317,8 @@ void EffectRun::run(const RoleSignals& signals, size_t rows, std::span<Output> o
   for (Output& output : outputs) output.mean.resize(rows), output.slope.resize(rows);
   run_lanes(signals, rows, outputs.size(), [&](size_t lane, size_t row, double value, double slope) {
     Output& output = outputs[lane];
-    output.mean[row] = float(output.factor * value), output.slope[row] = float(output.factor * slope);
+    output.mean[row] = float(output.factor * value);
+    output.slope[row] = plan_->acts_on_sensor ? 0.0F : float(output.factor * slope);
   });
 }
 

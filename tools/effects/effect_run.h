@@ -43,9 +43,9 @@ struct RoleSignals {
 /// is computed by two-point Gauss quadrature if the effect has no states, else by an additional
 /// integrator. In addition to the mean there is a slope: the change over the sample of the straight line with
 /// the same first moment. A rapidly oscillating force moves the axis by its slope as well as by its mean.
-/// Of a linear effect with states only one sample is integrated for each state and signal; the others follow
-/// by superposition. Of a switched one (see switched_effect.h) only those are integrated in which something
-/// is decided, of one set after the other.
+/// What acts on the sensor is read at an instant, and has none. Of a linear effect with states only one
+/// sample is integrated for each state and signal; the others follow by superposition. Of a switched one (see
+/// switched_effect.h) only those are integrated in which something is decided, of one set after the other.
 class EffectRun {
  public:
   /// `lanes`: requested number of sets; see lanes().

@@ -228,6 +228,17 @@ TEST(BadRecord, TooFewRowsGiveNoVerdict) {
   EXPECT_EQ(d.verdict, Verdict::unexplained);
 }
 
+/// Fewer rows than a window that is simulated has.
+TEST(BadRecord, AHandfulOfRowsGivesNoVerdict) {
+  FlawedMachine machine;
+  machine.sample_time = 0.03, machine.duration = 0.48;
+  const FlawedAxis axis(machine);
+  const Diagnosis d = diagnose(axis.diagram(), {axis.experiment()});
+  EXPECT_EQ(d.verdict, Verdict::unexplained) << to_text(d);
+  EXPECT_TRUE(d.effects.empty()) << to_text(d);
+  EXPECT_THAT(d.findings, finds("rows that may be fitted"));
+}
+
 TEST(BadRecord, OutliersAreCounted) {
   const Diagnosis d = spoilt([](auto&, auto& position) { position[2000] += 1e-3, position[3500] -= 1e-3; });
   EXPECT_THAT(d.findings, finds("2 readings are not those of their rows"));

@@ -98,6 +98,38 @@ TEST(Predictor, AForceChangesTheErrorsAsItsFilterSays) {
   EXPECT_LT(off, 1e-4 * size) << "consumed by the model instead of by the axis: the other sign";
 }
 
+/// As many masses as a belt in parts has, and more than the sizes that are known at compile time.
+TEST(Predictor, AnAxisWithManyStatesAnswersLikeItsMatrices) {
+  constexpr Eigen::Index states = 31;
+  Predicted p(short_record());
+  const Path path = p.run().path;
+  LinearAxis axis = p.axis;
+  std::srand(1);
+  axis.A = Eigen::MatrixXd::Random(states, states) * 0.1;
+  axis.C = Eigen::MatrixXd::Random(1, states);
+  axis.push = axis.noise_push = Eigen::VectorXd::Random(states);
+  axis.slope_share = Eigen::VectorXd::Random(states);
+  const Gains gains = gains_of(axis, noise_of_record(), axis.inertia);
+  std::vector<float> mean, slope;
+  for (size_t k = 0; k < path.samples(); ++k)
+    mean.push_back(float(std::sin(0.02 * double(k)))), slope.push_back(float(std::cos(0.03 * double(k))));
+  const Columns columns{Column(mean, slope)};
+  const std::vector<double> response = responses(axis, gains, path, Acts::force, pointers(columns)).front();
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(states);
+  double slow = 0, off = 0, size = 0;
+  for (size_t k = 0; k < path.samples(); ++k) {
+    const double error = axis.C.row(0).dot(x), white = gains.whiten(0, 0) * error;
+    off += std::pow(response[k] - white, 2), size += white * white;
+    x -= gains.K.col(0).head(states) * error, slow -= gains.K(states, 0) * error;
+    if (path.forgets(k)) slow = 0;
+    x = axis.A * x + axis.push * (slow - double(mean[k])) -
+        axis.slope_share.cwiseProduct(axis.push) * double(slope[k]);
+    slow *= gains.memory;
+  }
+  EXPECT_GT(size, 0);
+  EXPECT_LT(off, 1e-20 * size);
+}
+
 TEST(Predictor, OtherGainsNeedNoOtherRun) {
   Predicted p(short_record());
   const Prediction first = p.run();

@@ -291,6 +291,19 @@ std::string compile_problems(const std::string& path) {
   return problems.text();
 }
 
+TEST(EffectFile, AnEffectOfWhichNothingIsFittedIsAnError) {
+  DiagramFolder folder;
+  folder.with("fixed.json", R"({
+  "loopwright": 1, "effect": "fixed", "title": "Fixed", "physics": "Known from elsewhere.",
+  "parameters": {"level": {"unit": "$force", "value": "=0.1*force_level"}},
+  "blocks": {"drag": {"type": "CoulombFriction", "level": "=level", "in": {"velocity": "velocity"}}},
+  "attach": [{"to": "force", "from": "drag.force"}], "needs": {"text": ""}
+})");
+  Problems problems;
+  EXPECT_TRUE(load_effect(folder.path("fixed.json"), problems).empty());
+  EXPECT_TRUE(has(problems.text(), "no parameter of the effect is fitted")) << problems.text();
+}
+
 TEST(EffectFile, BlocksAreCheckedAsThoseOfADiagram) {
   DiagramFolder folder;
   folder.with("wrong.json", R"({
@@ -344,6 +357,18 @@ TEST(EffectRun, GivesTheSlopeOfAForceThatSwingsWithinASample) {
     const double slope = slope_of([&](double u) { return 0.3 * std::sin(start + step * u); });
     EXPECT_NEAR(double(output.slope[size_t(k)]), slope, 0.05 * 0.3 * step) << k;
   }
+}
+
+/// It is read at an instant: what it is within the sample moves nothing.
+TEST(EffectRun, AnErrorOfTheSensorHasNoSlope) {
+  EffectRun error(compiled(effect_named("encoder_periodic_error")));
+  error.set(0, 0.005), error.set(1, 1e-6), error.set(2, 1e-6);
+  const Sampled s;
+  EffectRun::Output output;
+  error.run(s.signals(true), s.position.size(), {&output, 1});
+  EXPECT_GT(std::ranges::max(output.mean), 1e-6F);
+  EXPECT_EQ(std::ranges::max(output.slope), 0);
+  EXPECT_EQ(std::ranges::min(output.slope), 0);
 }
 
 TEST(EffectRun, AnEffectWithStatesHasItsSlopeFromTheIntegral) {

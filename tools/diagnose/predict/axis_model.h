@@ -91,6 +91,9 @@ class AxisModel {
   bool set_added_inertia(double added);
   /// Of the user's own diagram.
   double nominal_inertia() const { return nominal_inertia_; }
+  bool has_mass() const {
+    return !inertia_parameter_.empty();
+  }  ///< a number of a block: see set_added_inertia
   double nominal_damping() const { return nominal_damping_; }
 
   /// White noise acts as the input does, instead of on the role force; returns whether that differs.

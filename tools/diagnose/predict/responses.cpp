@@ -10,9 +10,9 @@ namespace {
 
 /// Columns filtered in parallel, so that no column waits for its own previous sample. Vector types of the
 /// compiler become wider instructions in a function compiled for them. The bits stay the same, because
-/// nothing is contracted.
+/// nothing is contracted. Aligned as those instructions want it, wherever it is allocated.
 constexpr int side_by_side = 8;
-struct Side {
+struct alignas(side_by_side * sizeof(double) / 2) Side {
   using Half = double __attribute__((vector_size(side_by_side * sizeof(double) / 2)));
   Half low{}, high{};
 };
@@ -35,6 +35,7 @@ template <int States, int Ports, bool Changes> class ErrorFilter {
         ports_(int(axis.C.rows())),
         first_of_load_(axis.steps ? int(axis.steps->without.A.rows()) : n_),
         memory_(gains.memory) {
+    make_room();
     take_row(0);
     for (int i = 0; i < n(); ++i) {
       push_[i] = axis.push[i];
@@ -67,14 +68,13 @@ template <int States, int Ports, bool Changes> class ErrorFilter {
       d_ = d_ - K_[n()][p] * e[p];
     }
     if (forgets) d_ = Side{};
-    Side next[most_];
     for (int i = 0; i < n(); ++i) {
-      next[i] = push_[i] * d_ - enters_[i] * force - bends_[i] * slope;
-      for (int j = 0; j < n(); ++j) next[i] = next[i] + A_[i][j] * x_[j];
+      next_[i] = push_[i] * d_ - enters_[i] * force - bends_[i] * slope;
+      for (int j = 0; j < n(); ++j) next_[i] = next_[i] + A_[i][j] * x_[j];
     }
     if constexpr (Changes)
-      for (int i = first_of_load_; i < n(); ++i) next[i] = next[i] + load[i - first_of_load_];
-    for (int i = 0; i < n(); ++i) x_[i] = next[i];
+      for (int i = first_of_load_; i < n(); ++i) next_[i] = next_[i] + load[i - first_of_load_];
+    for (int i = 0; i < n(); ++i) x_[i] = next_[i];
     d_ = memory_ * d_;
   }
   [[gnu::always_inline]] Side white(const Side* e, int port) const {
@@ -96,14 +96,29 @@ template <int States, int Ports, bool Changes> class ErrorFilter {
     }
   }
 
-  static constexpr int most_ = States > 0 ? States + 1 : 24;
+  /// Of one state more, which is the slow force; of any size where it is known only now.
+  template <class T> using OfStates = std::conditional_t<(States > 0), T[States + 1], std::vector<T>>;
+
+  void make_room() {
+    if constexpr (States == 0) {
+      const size_t size = size_t(n_) + 1;
+      A_.assign(size, std::vector<double>(size)), K_.assign(size, {}), C_[0].resize(size), C_[1].resize(size);
+      for (std::vector<double>* list : {&push_, &enters_, &bends_}) list->resize(size);
+      x_.resize(size), next_.resize(size);
+    }
+  }
+
   const LinearAxis& axis_;
   const Gains& gains_;
   const int n_, ports_, first_of_load_;
   const double memory_;
-  double A_[most_][most_], push_[most_], enters_[most_], bends_[most_], C_[2][most_], K_[most_][2],
-      whiten_[2][2];
-  Side x_[most_], d_;
+  OfStates<OfStates<double>> A_;
+  OfStates<double> push_, enters_, bends_;
+  OfStates<double> C_[2];
+  OfStates<std::array<double, 2>> K_;
+  double whiten_[2][2];
+  OfStates<Side> x_, next_;
+  Side d_;
 };
 
 /// Some rows of the columns, row by row: scalar stores followed by a vector load would stall the processor.

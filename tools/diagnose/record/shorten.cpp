@@ -82,6 +82,7 @@ SignalRecord shortened(const SignalRecord& record, size_t count, double share) {
   thin.held_out_from = thin.rows();
   append_means(record, held_out, held_out + part(rows - held_out), count, thin);
   thin.sample_time = record.sample_time * double(count);
+  for (RecordedOutput& output : thin.outputs) output.resolution /= std::sqrt(double(count));
   if (count > 1)
     for (RecordedInput& input : thin.inputs)
       if (input.between_rows == BetweenRows::hold) input.between_rows = BetweenRows::linear;

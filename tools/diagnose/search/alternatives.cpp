@@ -110,7 +110,8 @@ std::vector<OtherSet> other_sets_of_laws(Rivals& rivals, const std::vector<Membe
     // That a member is not needed is known; which dry friction it is, is seen after reversals.
     const bool is_other_friction =
         is_of_one(other) && is_dry_friction(*other.replaced.front()) && is_dry_friction(*other.by.front());
-    if (other.by.empty() != other.replaced.empty() || is_other_friction) continue;
+    const bool has_no_name = std::ranges::any_of(other.replaced, &Candidate::is_unknown);
+    if (other.by.empty() != other.replaced.empty() || is_other_friction || has_no_name) continue;
     ++tried;
     const auto loss = rivals.loss_of(proposal);
     const bool is_same = other.by.empty();  // with other shapes, which may be better

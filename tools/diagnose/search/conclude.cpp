@@ -249,6 +249,15 @@ void ask_rivals(const Trials& trials, Conclusion& result, Evidence& evidence,
   add_late_shapes(trials, result, rivals, swaps, candidates.size());
 }
 
+/// What was refused is no alternative either.
+void leave_out_refused(Conclusion& result, const std::vector<const Candidate*>& refused) {
+  const auto is_refused = [&](const Candidate* c) { return std::ranges::find(refused, c) != refused.end(); };
+  for (std::vector<Substitute>& list : result.substitutes)
+    std::erase_if(list, [&](const Substitute& other) { return is_refused(other.candidate); });
+  std::erase_if(result.other_sets,
+                [&](const OtherSet& other) { return std::ranges::any_of(other.by, is_refused); });
+}
+
 /// Whether the errors are white and of one size, beside what the counts of the sensor make of them.
 void judge_errors(const Trials& trials, Conclusion& result) {
   const Estimate& estimate = result.estimate;
@@ -287,7 +296,8 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
   estimate = fitted_in_flight(trials, std::move(estimate));
   const bool was_doubtful = may_be_doubtful(estimate.members);
   keep_material(trials, result, candidates.size());
-  if (was_doubtful && !may_be_doubtful(estimate.members)) {  // all rows count again
+  const bool are_rows_added = !has_dry_friction(estimate.members) && forget_reversals(trials);
+  if ((was_doubtful && !may_be_doubtful(estimate.members)) || are_rows_added) {  // other rows count again
     leave_out_doubtful(trials, estimate);
     keep_material(trials, result, candidates.size());
   }
@@ -310,7 +320,7 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
       if (std::ranges::find(refused, shape.candidate) == refused.end()) all.push_back(&shape);
   Evidence evidence(trials, estimate, all, candidates.size());
   const std::vector<Proposal> exchanges = evidence.exchanges();
-  FrictionAtReversals at_reversals(trials, estimate, shapes, candidates.size());
+  FrictionAtReversals at_reversals(trials, estimate, shapes, candidates.size(), refused);
   Rivals rivals(
       trials, estimate, candidates.size(),
       std::max({least_gain, least_gain_per_row * n, unexplained(result.portmanteau_beside_counts())}),
@@ -333,6 +343,7 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
     ask_rivals(trials, result, evidence, exchanges, candidates, rivals, at_reversals, n);
     std::ranges::move(alike_in_one_direction(trials, estimate, candidates),
                       std::back_inserter(result.other_sets));
+    leave_out_refused(result, refused);
     if (rounds > 0 && (instead = rivals.better(unexplained(result.portmanteau_beside_counts()))))
       result.trail.push_back("with noise of its own another set does better");
   }

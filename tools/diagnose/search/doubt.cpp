@@ -108,7 +108,7 @@ void add_without_doubt(const Trials& trials, const Motion& motion, std::vector<S
 
 void leave_out_doubtful(Trials& trials, Estimate& estimate) {
   std::vector<std::vector<char>> usable;
-  for (const Trial& trial : trials.list) usable.push_back(trial.moving);
+  for (const Trial& trial : trials.list) usable.push_back(trial.certain());
   if (may_be_doubtful(estimate.members)) {
     const std::vector<std::vector<char>> doubtful = doubtful_rows(trials, estimate);
     size_t moving = 0, left = 0;
@@ -120,7 +120,7 @@ void leave_out_doubtful(Trials& trials, Estimate& estimate) {
       }
     // A shape that makes nearly all rows doubtful explains nothing.
     if (double(left) < criteria::least_without_doubt * double(moving))
-      for (size_t t = 0; t < usable.size(); ++t) usable[t] = trials.list[t].moving;
+      for (size_t t = 0; t < usable.size(); ++t) usable[t] = trials.list[t].certain();
   }
   bool changes = false;
   for (size_t t = 0; t < usable.size(); ++t) {

@@ -29,7 +29,7 @@ bool is_feasible(const Shape& shape, const Eigen::VectorXd& theta, Eigen::Index 
     return theta[first] > criteria::least_step_to_shape && theta[first] < criteria::most_step_to_shape;
   for (size_t i = 0; i < candidate.linear.size(); ++i) {
     const double value = theta[first + Eigen::Index(i)];
-    if (value < candidate.linear[i].low || value > candidate.linear[i].high) return false;
+    if (!(value >= candidate.linear[i].low && value <= candidate.linear[i].high)) return false;  // nor NaN
   }
   return true;
 }

@@ -47,11 +47,13 @@ class OtherRows {
 };
 
 /// Other laws of dry friction, if this is one.
-std::vector<const Candidate*> other_laws(const Candidate& present, const std::vector<Shape>& shapes) {
+std::vector<const Candidate*> other_laws(const Candidate& present, const std::vector<Shape>& shapes,
+                                         const std::vector<const Candidate*>& refused) {
   std::vector<const Candidate*> laws;
   for (const Shape& shape : shapes)
     if (is_dry_friction(present) && is_dry_friction(*shape.candidate) &&
-        shape.candidate->name != present.name && (laws.empty() || laws.back() != shape.candidate))
+        shape.candidate->name != present.name && (laws.empty() || laws.back() != shape.candidate) &&
+        std::ranges::find(refused, shape.candidate) == refused.end())
       laws.push_back(shape.candidate);
   return laws;
 }
@@ -74,8 +76,9 @@ std::vector<Member> exchanged(std::vector<Member> members, size_t at, const Cand
 }  // namespace
 
 FrictionAtReversals::FrictionAtReversals(Trials& trials, const Estimate& estimate,
-                                         const std::vector<Shape>& shapes, size_t catalogue)
-    : trials_(trials), estimate_(estimate), shapes_(shapes), catalogue_(catalogue) {
+                                         const std::vector<Shape>& shapes, size_t catalogue,
+                                         const std::vector<const Candidate*>& refused)
+    : trials_(trials), estimate_(estimate), shapes_(shapes), catalogue_(catalogue), refused_(refused) {
   const auto is_dry_member = [](const Member& m) { return is_dry_friction(*m.candidate); };
   if (trials.has_map() || std::ranges::none_of(estimate.members, is_dry_member)) return;
   for (size_t t = 0; t < trials.list.size(); ++t)
@@ -148,7 +151,7 @@ std::optional<Estimate> FrictionAtReversals::better() {
   if (numbers * (present_.mean_square - 1) < criteria::least_gain) return {};
   Rows best;
   for (size_t m = 0; m < estimate_.members.size(); ++m)
-    for (const Candidate* law : other_laws(*estimate_.members[m].candidate, shapes_)) {
+    for (const Candidate* law : other_laws(*estimate_.members[m].candidate, shapes_, refused_)) {
       Rows rows = with_law(m, *law);
       if (!explains(rows, present_, criteria::least_gain) || !is_resolved(rows.fitted.members[m])) continue;
       const bool is_beyond_doubt = gain(present_, rows) > criteria::least_gain_at_reversals &&
@@ -159,7 +162,8 @@ std::optional<Estimate> FrictionAtReversals::better() {
         best = std::move(rows);
     }
   if (!best.fitted.is_valid) return {};
-  for (size_t t = 0; t < rows_.size(); ++t) trials_.list[t].moving = trials_.list[t].usable = rows_[t];
+  for (size_t t = 0; t < rows_.size(); ++t)
+    trials_.list[t].with_reversals = trials_.list[t].usable = rows_[t];
   after_reversals_ = 0;
   return std::move(best.fitted);
 }
@@ -170,6 +174,15 @@ bool FrictionAtReversals::is_refuted(size_t member, const Candidate& law, const 
   if (present_.mean_square > criteria::most_mean_square_at_reversals) return false;
   return other.is_valid && explains(present_, on_all_rows(other.members, iterations_of_a_law),
                                     criteria::least_gain_at_reversals);
+}
+
+bool forget_reversals(Trials& trials) {
+  bool changes = false;
+  for (Trial& trial : trials.list) {
+    if (trial.with_reversals.empty()) continue;
+    trial.with_reversals.clear(), trial.usable = trial.moving, changes = true;
+  }
+  return changes;
 }
 
 }  // namespace loopwright::diagnosis

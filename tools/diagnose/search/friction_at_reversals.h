@@ -9,12 +9,13 @@ namespace loopwright::diagnosis {
 
 class FrictionAtReversals {
  public:
-  /// The estimate is only read. `shapes`: where the fits of other laws begin.
+  /// The estimate is only read. `shapes`: where the fits of other laws begin; of those that were refused none
+  /// is asked.
   FrictionAtReversals(Trials& trials, const Estimate& estimate, const std::vector<Shape>& shapes,
-                      size_t catalogue);
+                      size_t catalogue, const std::vector<const Candidate*>& refused);
 
   /// With another law in place of the present one: it explains the rows after reversals, and the present one
-  /// does not. These rows count from then on: they determine its parameters.
+  /// does not. These rows count from then on, until forget_reversals(): they determine its parameters.
   std::optional<Estimate> better();
   /// Laws that do a little better, or with a parameter at the end of its range: not found, and not excluded
   /// either.
@@ -44,10 +45,15 @@ class FrictionAtReversals {
   const Estimate& estimate_;
   const std::vector<Shape>& shapes_;
   size_t catalogue_;
+  const std::vector<const Candidate*>& refused_;
   std::vector<std::vector<char>> rows_;  ///< those that count, and those after reversals
   size_t after_reversals_ = 0;
   Rows present_;
   std::vector<Law> not_excluded_;
 };
+
+/// Leaves the rows after reversals out again, as for a set without the law that they chose. Whether any
+/// counted.
+bool forget_reversals(Trials& trials);
 
 }  // namespace loopwright::diagnosis

@@ -21,14 +21,16 @@ class RememberedRuns;
 struct Trial {
   std::unique_ptr<AxisModel> model;
   Pace pace;
-  size_t settled_from = 0;    ///< first row at which the predictor has forgotten its start
-  std::vector<char> moving;   ///< rows that have been moving for some time, after the start, not damaged
-  std::vector<char> usable;   ///< those of them that count: see leave_out_doubtful()
-  std::vector<char> at_rest;  ///< rows at rest, after the start
-  size_t held_out_from = 0;   ///< rows from here on are not fitted
-  std::vector<double> input;  ///< as recorded, over the rows that a model is run along: see run_along
+  size_t settled_from = 0;   ///< first row at which the predictor has forgotten its start
+  std::vector<char> moving;  ///< rows that have been moving for some time, after the start, not damaged
+  std::vector<char> with_reversals;  ///< instead of them, where they chose a law: see FrictionAtReversals
+  std::vector<char> usable;          ///< those of them that count: see leave_out_doubtful()
+  std::vector<char> at_rest;         ///< rows at rest, after the start
+  size_t held_out_from = 0;          ///< rows from here on are not fitted
+  std::vector<double> input;         ///< as recorded, over the rows that a model is run along: see run_along
 
   size_t rows() const { return input.size(); }
+  const std::vector<char>& certain() const { return with_reversals.empty() ? moving : with_reversals; }
 };
 
 /// The records of one axis, and what is known of their noise.
@@ -53,6 +55,8 @@ struct Trials {
   size_t ports() const { return list.front().model->record().measured.size(); }
   /// All records are maps of balances, or none.
   bool has_map() const { return list.front().model->record().is_map; }
+  /// The diagram has a mass to which more can be added.
+  bool has_mass() const { return list.front().model->has_mass(); }
 
   /// During the search for a set, rows that are not fitted need not be run along.
   enum class Rows { fitted, all };

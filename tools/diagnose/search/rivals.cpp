@@ -13,6 +13,7 @@ void maximise(Trials& trials, Estimate& estimate) {
 Estimate Rivals::fitted(const Proposal& proposal) const {
   constexpr int iterations = 4;
   Estimate other;
+  if (is_refused(proposal)) return other;
   other.members = applied(proposal, estimate_.members);
   const double price = criterion_of(other);
   return fit_members(trials_, std::move(other.members), estimate_.noise, estimate_.motion, iterations,
@@ -32,7 +33,7 @@ std::optional<double> Rivals::loss_of(const Proposal& proposal, const Estimate& 
 }
 
 std::optional<double> Rivals::loss_of(const Proposal& proposal) {
-  if (is_spent() || is_refused(proposal)) return {};
+  if (is_spent()) return {};
   Estimate other = fitted(proposal);
   if (const double loss = criterion_of(other) - criterion_of(estimate_); loss > reach_ && loss < 4 * reach_)
     maximise(trials_, other);

@@ -27,7 +27,8 @@ class Rivals {
   const std::vector<const Candidate*>& refused() const { return refused_; }
   /// No further rival is fitted.
   bool is_spent() const { return trials_.work->is_spent(criteria::work_with_rivals); }
-  /// With a proposal applied and all parameters fitted, as long as it may come within reach.
+  /// With a proposal applied and all parameters fitted, as long as it may come within reach; not valid with a
+  /// candidate that was refused.
   Estimate fitted(const Proposal& proposal) const;
   /// How much worse its criterion is; empty: beyond `most_reaches` times the reach. A larger set that
   /// contains this one as a special case is always close, so it must explain more to be a rival.

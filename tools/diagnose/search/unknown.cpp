@@ -122,7 +122,7 @@ double transition_of_direction(const RecordSizes& sizes) {
   return std::max(1e-6 * sizes.stroke, sizes.resolution);
 }
 
-std::vector<Candidate> unknown_forces(const RecordSizes& sizes, bool is_map) {
+std::vector<Candidate> unknown_forces(const RecordSizes& sizes, bool is_map, bool has_mass) {
   const double low = sizes.lowest_position, high = sizes.highest_position, top = sizes.top_speed;
   const Variable one = each_sample([](const Path&, size_t) { return 1.0; });
   const Variable acceleration = each_sample([](const Path& path, size_t k) { return path.acceleration[k]; });
@@ -135,12 +135,14 @@ std::vector<Candidate> unknown_forces(const RecordSizes& sizes, bool is_map) {
   of_position.law_of = LawOf::position;
   const Candidate of_direction = spline("position,direction", 24, low, high, position, direction);
   if (is_map) return {of_position, of_direction};
+  Candidate of_acceleration = spline("position,acceleration", 24, low, high, position, acceleration);
+  if (has_mass) of_acceleration = mass_along(std::move(of_acceleration));
   return {of_position,
           std::move(of_velocity),
           spline("time", 40, 0, sizes.duration, time, one),
           of_direction,
           spline("position,velocity", 24, low, high, position, velocity),
-          mass_along(spline("position,acceleration", 24, low, high, position, acceleration)),
+          std::move(of_acceleration),
           tone(sizes)};
 }
 

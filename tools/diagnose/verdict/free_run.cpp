@@ -125,7 +125,7 @@ class Windows {
     const auto follow_to = [&](size_t end) {
       for (; k < end; ++k) axis_.place(motion_.position[k], motion_.velocity[k]), axis_.step(k);
     };
-    follow_to(has_hold_out ? trial_.held_out_from : length);
+    follow_to(has_hold_out ? trial_.held_out_from : std::min(length, record_.rows()));
     while (k + 2 * length < record_.rows() && !result_.diverged) {
       follow_to(k + length);
       if (is_whole(k, k + length)) run_window(k, length);

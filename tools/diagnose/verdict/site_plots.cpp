@@ -58,7 +58,8 @@ class TermPlot {
     double count = usual_nodes;
     if (term.shape->name == "periodic")
       count = std::clamp(nodes_a_period * (high - low) / term.nonlinear[0], usual_nodes, most_nodes);
-    nodes_.low = low, nodes_.count = Eigen::Index(count), nodes_.distance = (high - low) / (count - 1);
+    nodes_.low = low, nodes_.count = Eigen::Index(count);
+    nodes_.distance = (high - low) / double(nodes_.count - 1);
   }
 
   bool is_drawn() const { return nodes_.distance > 0; }
