@@ -12,6 +12,7 @@
 #include "engine/json/problem_limit.h"
 #include "engine/record/text.h"
 #include "engine/record/time_stamps.h"
+#include "models/real/double_functions.h"
 #include "models/real/fraction.h"
 
 namespace loopwright {
@@ -59,6 +60,30 @@ double mean_step(std::span<const double> times, double steps) {
   const double rounding =
       2 * std::numeric_limits<double>::epsilon() * std::max(std::abs(times.front()), std::abs(times.back()));
   return std::abs(decimal - mean) * steps <= rounding ? decimal : mean;
+}
+
+bool is_multiple(double time, double digit) {
+  constexpr double rounding = 1e-6;  // of the digit
+  const double count = time / digit;
+  return std::abs(count - std::round(count)) <= std::max(rounding, 1e-15 * std::abs(count));
+}
+
+/// The last digit of the greatest times, where all are written with as many significant digits: early times
+/// have more decimals then. With fewer digits than these, any times are alike in this way. 0: they are not,
+/// or it would not be above `least`.
+double last_significant_digit(std::span<const double> times, double least) {
+  constexpr int least_digits = 6, most_digits = 10;
+  const auto decade = [](double time) { return std::floor(decimal_logarithm(std::abs(time))); };
+  const double greatest = decade(std::max(std::abs(times.front()), std::abs(times.back())));
+  if (!std::isfinite(greatest)) return 0;
+  for (int digits = least_digits; digits <= most_digits; ++digits) {
+    if (any_power(10, greatest + 1 - digits) <= least) return 0;
+    const auto is_written_so = [&](double time) {
+      return time == 0 || is_multiple(time, any_power(10, decade(time) + 1 - digits));
+    };
+    if (std::ranges::all_of(times, is_written_so)) return any_power(10, greatest + 1 - digits);
+  }
+  return 0;
 }
 
 /// [sample times] The largest deviation of a time from the grid; `sample_of(row)` is the sample number of the
@@ -150,16 +175,11 @@ TimeAxis even_but_for_gaps(std::span<const double> times, double median, double 
 }  // namespace
 
 double last_digit(std::span<const double> times) {
-  constexpr double rounding = 1e-6;  // of the digit
-  for (double digit = 1; digit > 0.5e-9; digit /= 10) {
-    bool all = true;
-    for (size_t i = 0; i < times.size() && all; ++i) {
-      const double count = times[i] / digit;
-      all = std::abs(count - std::round(count)) <= std::max(rounding, 1e-15 * std::abs(count));
-    }
-    if (all) return digit;
-  }
-  return 0;
+  double digit = 1;
+  while (digit > 0.5e-9 && !std::ranges::all_of(times, [&](double time) { return is_multiple(time, digit); }))
+    digit /= 10;
+  if (digit < 0.5e-9) digit = 0;
+  return std::max(digit, last_significant_digit(times, digit));
 }
 
 TimeAxis check_time(const Column& time, Problems& problems, const TimeOptions& options, const Place& place) {

@@ -70,6 +70,27 @@ TEST(TimeAxis, RecognizesRoundedStamps) {
     }
 }
 
+/// As "%.9g" and many programs write them: the later, the fewer decimals.
+TEST(TimeAxis, RecognizesStampsOfSignificantDigits) {
+  for (const double rate : {750.0, 1024.0, 51200.0})
+    for (const int digits : {7, 9}) {
+      SCOPED_TRACE(testing::Message() << rate << " Hz, " << digits << " digits");
+      Column stamps{"t", "s", {}};
+      for (int k = 0; k < 5000; ++k)
+        stamps.values.push_back(std::stod(fmt::format("{:.{}g}", k / rate, digits)));
+      Problems problems;
+      const TimeAxis axis = check_time(stamps, problems);
+      EXPECT_TRUE(axis.on_grid && axis.regular);
+      EXPECT_EQ(axis.sample_time, 1 / rate) << "to the last bit";
+    }
+}
+/// A few written by hand are no rounded clock.
+TEST(TimeAxis, TimesOfFewDigitsAreNoRoundedClock) {
+  const Column stamps{"t", "s", {0.0005, 0.001, 1, 2, 3, 5}};
+  Problems problems;
+  EXPECT_FALSE(check_time(stamps, problems).on_grid);
+}
+
 TEST(TimeAxis, ShortRecordsOfWholeRatesAreNoOddDecimals) {
   for (const double rate : {300.0, 350.0, 70.0})
     for (const int rows : {150, 200, 300, 1000}) {

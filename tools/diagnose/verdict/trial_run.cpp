@@ -43,8 +43,8 @@ std::optional<std::string> why_not_run(const Improvement& improved,
   if (improved.moved.empty() && improved.file->text == nominal->text) return {};
   for (const auto& experiment : experiments) {
     const size_t rows = experiment->data.columns.front().values.size();
-    const Comparison before = compare_signals(nominal, *experiment, load);
     try {
+      const Comparison before = compare_signals(nominal, *experiment, load);
       const Comparison after =
           compare_signals(improved.file, with_moved_ports(*experiment, improved.moved), load);
       if (!is_complete(before, rows)) continue;  // it tells nothing
