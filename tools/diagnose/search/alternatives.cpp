@@ -140,9 +140,10 @@ void add_laws(const std::vector<OtherSet>& laws, std::vector<OtherSet>& sets) {
 
 namespace {
 
-/// With usual shapes, and no force yet.
+/// With usual shapes, and no force yet, unless its amplitude is one.
 Member at_start(const Candidate& candidate) {
   Member member{&candidate, std::vector<double>(candidate.linear.size(), 0.0), {}};
+  if (candidate.amplitude_is_one) member.linear = {1};
   for (const CandidateParameter& p : candidate.nonlinear) member.nonlinear.push_back(p.start);
   return member;
 }

@@ -35,6 +35,7 @@ std::optional<double> Rivals::loss_of(const Proposal& proposal, const Estimate& 
 std::optional<double> Rivals::loss_of(const Proposal& proposal) {
   if (is_spent()) return {};
   Estimate other = fitted(proposal);
+  if (!other.is_valid) return {};
   if (const double loss = criterion_of(other) - criterion_of(estimate_); loss > reach_ && loss < 4 * reach_)
     maximise(trials_, other);
   const std::optional<double> loss = loss_of(proposal, other);
