@@ -1,9 +1,9 @@
 // What takes the place of a member that is refused.
-#include "tools/diagnose/search/alternatives.h"
+#include "tools/diagnose/search/replacement.h"
 #include "tests/tools/diagnose/flawed_axis.h"
 #include "tools/diagnose/search/prepare.h"
 
-namespace loopwright::diagnosis::alternatives_test {
+namespace loopwright::diagnosis::replacement_test {
 namespace {
 
 /// A command that comes a share of a sample late, as all of it: it has a shape and no amplitude.
@@ -25,7 +25,7 @@ Candidate late_command() {
   return late;
 }
 
-TEST(Alternatives, ALateCommandTakesThePlaceOfAMemberAsAWhole) {
+TEST(Replacement, ALateCommandTakesThePlaceOfAMemberAsAWhole) {
   const FlawedAxis axis(FlawedMachine{});
   Motion motion;
   Trials trials = prepare(axis.diagram(), {axis.experiment()}, {}, motion);
@@ -45,4 +45,4 @@ TEST(Alternatives, ALateCommandTakesThePlaceOfAMemberAsAWhole) {
 }
 
 }  // namespace
-}  // namespace loopwright::diagnosis::alternatives_test
+}  // namespace loopwright::diagnosis::replacement_test
