@@ -82,7 +82,7 @@ Diagnosis diagnose_any_diagram(const std::string& diagram, const std::vector<std
   result.has_roles = false;
   result.diagram = diagram, result.experiments = experiments, result.title = model.plan().title;
   show_output(model.record().outputs.front(), result);
-  result.rows = model.record().held_out_from;
+  result.rows = model.record().fitted_rows();
   if (model.record().shortened) result.findings.push_back(*model.record().shortened);
   if (const size_t count = model.record().false_readings; count > 0)
     result.findings.push_back(readings_are_false(count, "they count as missing"));

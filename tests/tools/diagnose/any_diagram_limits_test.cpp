@@ -63,6 +63,14 @@ TEST(AnyDiagramLimits, AFewRowsAreRefused) {
   plant.rows = 150;
   EXPECT_THAT(refusal(plant), testing::HasSubstr("too few rows for a diagnosis"));
 }
+/// A thousand rows of the input, and one reading in twenty of them.
+TEST(AnyDiagramLimits, AFewReadingsAreRefusedHoweverManyRowsThereAre) {
+  Plant plant = oscillator({}, 1);
+  plant.rows = 1000, plant.reads_every = {20};
+  const std::string text = refusal(plant);
+  EXPECT_THAT(text, testing::HasSubstr("at least 200 rows in which something was measured"));
+  EXPECT_THAT(text, testing::HasSubstr("38 in "));
+}
 TEST(AnyDiagramLimits, ASearchThatUsesUpItsWorkSaysSoAndCallsNothingComplete) {
   const RecordedPlant files(with_sites(R"(["balance1.sum"])"));
   DiagnoseOptions options;

@@ -37,6 +37,14 @@ std::vector<bool> SignalRecord::settling_rows() const {
   return settles;
 }
 
+size_t SignalRecord::fitted_rows() const {
+  size_t count = 0;
+  for (size_t row = 0; row < held_out_from; ++row)
+    count +=
+        std::ranges::any_of(outputs, [&](const RecordedOutput& o) { return std::isfinite(o.value[row]); });
+  return count;
+}
+
 SignalRecord read_signal_record(const Experiment& experiment, Problems& problems) {
   SignalRecord record;
   record.title = experiment.title, record.path = experiment.path;
@@ -68,10 +76,10 @@ SignalRecord read_signal_record(const Experiment& experiment, Problems& problems
 }
 
 void reject_too_few(const SignalRecord& record, Problems& problems) {
-  if (problems.has_errors() || record.held_out_from >= fewest_rows) return;
+  if (problems.has_errors() || record.fitted_rows() >= fewest_rows) return;
   auto& p = problems.error({}, "/hold_out", "", "too few rows are left to fit");
-  p.expected = fmt::format("at least {} rows", fewest_rows);
-  p.found = fmt::format("{} in {}", record.held_out_from, record.path);
+  p.expected = fmt::format("at least {} rows in which something was measured", fewest_rows);
+  p.found = fmt::format("{} in {}", record.fitted_rows(), record.path);
 }
 
 SignalRecord joined(std::vector<SignalRecord> records, Problems& problems) {

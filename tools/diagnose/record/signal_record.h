@@ -36,6 +36,8 @@ struct SignalRecord {
 
   size_t rows() const { return time.size(); }
   bool begins_at(size_t row) const { return row == 0 || (row < begins.size() && begins[row]); }
+  /// Rows that are not held out and in which something was measured: a slow sensor has few of them.
+  size_t fitted_rows() const;
   /// Rows in which a filter still learns where a record, or its part that is held out, begins.
   std::vector<bool> settling_rows() const;
   /// Length of the sample that begins at the row; that of the last row of a record is typical.
