@@ -61,11 +61,12 @@ template <class Real> struct PreslidingFriction {
     if (!any(rise != 0.0)) return level;
     return level + rise * exponential(-raised(absolute(velocity) * per_speed));
   }
-  /// To the exponent; the usual one is a square.
+  /// To the exponent; usual are 1 and 2, and a power costs as much as all else.
   Real raised(const Real& speed) const {
     const Real square = speed * speed;
     if (!any(exponent != 2.0)) return square;
-    return select(exponent == 2.0, square, power(speed, exponent));
+    if (!any(exponent != 1.0)) return speed;
+    return select(exponent == 2.0, square, select(exponent == 1.0, speed, power(speed, exponent)));
   }
   void outputs(const In& in, const Memory& memory, Out& out) const {
     out.fraction = fraction(in, memory);

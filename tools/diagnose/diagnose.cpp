@@ -349,6 +349,8 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
   const double white = accepted.conclusion.estimate.noise.white;
   if (white > criteria::loud_noise * trials.force_rms && !trials.has_map())
     result.findings.push_back(noise_is_loud(white / trials.force_rms, shortest_pitch(sizes), units));
+  if (auto finding = friction_along_the_way(trials, conclusion.estimate))
+    result.findings.push_back(std::move(*finding));
   if (accepted.has_few_simulations()) result.findings.push_back(too_few_simulations(accepted.runs.back()));
   tell_effects(conclusion, staircase, catalogue, units, result);
   if (!trials.has_map()) tell_common_factor(trials, inverse, result);

@@ -26,7 +26,8 @@ class FormReader {
 
   Effect read() {
     read_words();
-    if (const Value* list = object("parameters", "parameters by name")) read_parameters(*list);
+    if (const Value* list = object("parameters", "parameters by name"))
+      for (const Value::Member& member : list->members) read_parameter(member);
     read_blocks();
     read_attachments();
     if (const Value* needs = object("needs", "what a record must contain, with a \"text\""))
@@ -69,12 +70,6 @@ class FormReader {
 
   // ---- Parameters ----
 
-  void read_parameters(const Value& list) {
-    for (const Value::Member& member : list.members) read_parameter(member);
-    if (std::ranges::none_of(effect_.parameters, &EffectParameter::is_fitted))
-      reader_.error(list, "no parameter of the effect is fitted").expected =
-          "one at least with a \"range\" and without a \"value\", as its amplitude";
-  }
   void read_parameter(const Value::Member& member) {
     if (!reader_.check_name(member, "a parameter") ||
         !reader_.expect(member.value, Kind::object, "a parameter", "{\"unit\": …, \"range\": …}"))

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <cmath>
 #include "tests/blocks/block_under_test.h"
@@ -51,13 +52,18 @@ TEST(PreslidingFriction, DependsOnTheWayAndNotOnItsSteps) {
 }
 
 TEST(PreslidingFriction, FallsWithSpeedAlongStribecksCurve) {
-  BlockUnderTest friction(
-      "PreslidingFriction",
-      R"({"level": 1, "static_level": 1.6, "stribeck_speed": 0.1, "exponent": 2, "transition_distance": 1e-6})");
-  move(friction, 0, 0.1), move(friction, 1, 0.1);
-  EXPECT_NEAR(friction.output("force"), 1 + 0.6 * std::exp(-1), 1e-12);
-  move(friction, 2, 10);
-  EXPECT_NEAR(friction.output("force"), 1, 1e-12);
+  for (const double exponent : {1.0, 1.4, 2.0}) {
+    BlockUnderTest friction("PreslidingFriction",
+                            fmt::format(R"({{"level": 1, "static_level": 1.6, "stribeck_speed": 0.1,
+                                             "exponent": {}, "transition_distance": 1e-6}})",
+                                        exponent));
+    move(friction, 0, 0.1), move(friction, 1, 0.1);
+    EXPECT_NEAR(friction.output("force"), 1 + 0.6 * std::exp(-1), 1e-12);
+    move(friction, 2, 0.15);
+    EXPECT_NEAR(friction.output("force"), 1 + 0.6 * std::exp(-std::pow(1.5, exponent)), 1e-12) << exponent;
+    move(friction, 3, 10);
+    EXPECT_NEAR(friction.output("force"), 1, 1e-12);
+  }
 }
 
 TEST(PreslidingFriction, HoldsWithoutCreepingUnderAForceBelowItsLevel) {

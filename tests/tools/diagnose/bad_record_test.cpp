@@ -228,6 +228,24 @@ TEST(BadRecord, TooFewRowsGiveNoVerdict) {
   EXPECT_EQ(d.verdict, Verdict::unexplained);
 }
 
+/// Friction that grows along the way pulls as a spring does, as long as nothing comes back.
+TEST(BadRecord, OfOneDirectionASpringMayBeFrictionAlongTheWay) {
+  Truth truth;
+  truth.force = [](double x, double v, double) { return v > 0 ? 0.5 * x : 0; };
+  truth.returns = false, truth.duration_s = 8;
+  const RecordedAxis one_way(truth);
+  const Diagnosis d = diagnose(one_way.diagram(), {one_way.experiment()});
+  EXPECT_THAT(d.findings, Contains(Field(&RecordFinding::cost, HasSubstr("friction that changes along"))))
+      << to_text(d);
+  truth.force = [](double x, double, double) { return 0.5 * x; };
+  truth.returns = true;
+  const RecordedAxis both_ways(truth);
+  const Diagnosis spring = diagnose(both_ways.diagram(), {both_ways.experiment()});
+  EXPECT_EQ(spring.verdict, Verdict::explained) << to_text(spring);
+  EXPECT_THAT(spring.findings,
+              Not(Contains(Field(&RecordFinding::cost, HasSubstr("friction that changes")))));
+}
+
 /// Fewer rows than a window that is simulated has.
 TEST(BadRecord, AHandfulOfRowsGivesNoVerdict) {
   FlawedMachine machine;

@@ -142,5 +142,21 @@ TEST(UsersCatalogue, MayBeAPartOfTheBuiltInOne) {
   EXPECT_THAT(names(d), ElementsAre("coulomb_friction")) << to_text(d);
 }
 
+/// Such a file can be inserted into a diagram; there is nothing to look for.
+TEST(UsersCatalogue, AnEffectOfWhichNothingIsFittedIsNotLookedFor) {
+  HiddenAxis axis;
+  const std::string experiment = axis.record("record", axis.nominal(), there_and_back(0.1, 0.2));
+  std::filesystem::create_directory(axis.file("own"));
+  std::ofstream(axis.file("own/known.json")) << R"({
+  "loopwright": 1, "effect": "known", "title": "Known", "physics": "Known from elsewhere.",
+  "parameters": {"damping": {"unit": "$force*s/$position", "value": "=0.1*force_level/top_speed"}},
+  "blocks": {"drag": {"type": "ViscousFriction", "damping": "=damping", "in": {"velocity": "velocity"}}},
+  "attach": [{"to": "force", "from": "drag.force"}], "needs": {"text": ""}
+})";
+  DiagnoseOptions options;
+  options.more_catalogues = {axis.file("own")};
+  EXPECT_THAT(not_looked_for(diagnose(axis.diagram(), {experiment}, options)), Contains("known"));
+}
+
 }  // namespace
 }  // namespace loopwright::room_test

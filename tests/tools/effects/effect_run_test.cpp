@@ -291,19 +291,6 @@ std::string compile_problems(const std::string& path) {
   return problems.text();
 }
 
-TEST(EffectFile, AnEffectOfWhichNothingIsFittedIsAnError) {
-  DiagramFolder folder;
-  folder.with("fixed.json", R"({
-  "loopwright": 1, "effect": "fixed", "title": "Fixed", "physics": "Known from elsewhere.",
-  "parameters": {"level": {"unit": "$force", "value": "=0.1*force_level"}},
-  "blocks": {"drag": {"type": "CoulombFriction", "level": "=level", "in": {"velocity": "velocity"}}},
-  "attach": [{"to": "force", "from": "drag.force"}], "needs": {"text": ""}
-})");
-  Problems problems;
-  EXPECT_TRUE(load_effect(folder.path("fixed.json"), problems).empty());
-  EXPECT_TRUE(has(problems.text(), "no parameter of the effect is fitted")) << problems.text();
-}
-
 TEST(EffectFile, BlocksAreCheckedAsThoseOfADiagram) {
   DiagramFolder folder;
   folder.with("wrong.json", R"({

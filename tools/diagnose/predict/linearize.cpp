@@ -7,12 +7,9 @@
 namespace loopwright::diagnosis {
 namespace {
 
-/// So many rows of the record are looked at, and the diagram is linearized at so many of those.
-constexpr size_t rows_looked_at = 64, most_operating_rows = 24;
-
 /// Rows distributed over the record where the axis moves.
 std::vector<size_t> operating_rows(const AxisRecord& record) {
-  std::vector<size_t> moving;
+  std::vector<size_t> rows;
   const std::vector<double>& y = record.measured.front().value;
   const bool is_velocity = record.measured.front().role == "velocity";
   double greatest = 0;
@@ -20,13 +17,10 @@ std::vector<size_t> operating_rows(const AxisRecord& record) {
     return is_velocity ? std::abs(y[k]) : std::abs(y[k + 1] - y[k - 1]) / (2 * record.sample_time);
   };
   for (size_t k = 1; k + 1 < y.size(); ++k) greatest = std::max(greatest, speed(k));
-  const size_t step = std::max<size_t>(1, y.size() / rows_looked_at);
-  for (size_t k = 1; k + 1 < y.size(); k += step)
-    if (speed(k) > 0.1 * greatest) moving.push_back(k);
-  if (moving.empty()) return {std::min<size_t>(1, y.size() - 1)};
-  const size_t count = std::min(moving.size(), most_operating_rows);
-  std::vector<size_t> rows;
-  for (size_t i = 0; i < count; ++i) rows.push_back(moving[i * moving.size() / count]);
+  const size_t step = std::max<size_t>(1, y.size() / 64);
+  for (size_t k = 1; k + 1 < y.size() && rows.size() < 24; k += step)
+    if (speed(k) > 0.1 * greatest) rows.push_back(k);
+  if (rows.empty()) rows.push_back(std::min<size_t>(1, y.size() - 1));
   return rows;
 }
 

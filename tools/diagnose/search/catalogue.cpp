@@ -258,8 +258,10 @@ Candidate candidate_of(const Effect& effect, std::shared_ptr<const EffectPlan> p
   return candidate;
 }
 
-/// A range or a value of the effect that these records do not determine; empty: all are numbers.
+/// Why it cannot be fitted: what these records do not determine, or nothing free; empty: all are numbers.
 std::string unknown_number(const Effect& effect, const RecordSizes& sizes) {
+  if (std::ranges::none_of(effect.parameters, &EffectParameter::is_fitted))
+    return "it has no parameter that is fitted";
   std::vector<double> starts;
   for (const EffectParameter& p : effect.parameters) {
     if (!p.is_fitted) continue;

@@ -46,13 +46,14 @@ bool contains(const std::vector<Proposal>& list, const Proposal& proposal) {
 /// that is not out of reach.
 std::optional<Estimate> simplified(Rivals& rivals, const std::vector<Member>& members,
                                    const std::vector<Proposal>& exchanges) {
+  constexpr double most_reaches = 10;  // promised beyond that, none is fitted
   for (size_t m = 0; m < members.size(); ++m) {
     const Member& member = members[m];
     if (!is_at_limit(member)) continue;
     for (const Proposal& proposal : exchanges) {
       const bool is_simpler = proposal.removed == std::vector<size_t>{m} && proposal.added.size() == 1 &&
                               parameters_of(*proposal.added[0].candidate) < parameters_of(*member.candidate);
-      if (!is_simpler || proposal.gain <= -10 * rivals.reach() || rivals.is_spent()) continue;
+      if (!is_simpler || proposal.gain <= -most_reaches * rivals.reach() || rivals.is_spent()) continue;
       Estimate other = rivals.fitted(proposal);
       const bool is_good = rivals.loss_of(proposal, other) || rivals.is_promised(proposal, other);
       if (is_good && !rivals.is_refuted(proposal, other)) return other;
@@ -211,17 +212,28 @@ std::vector<OtherSet> laws_beside(const Trials& trials, const Estimate& estimate
   return laws;
 }
 
+/// How likely a member is: alternatives that do as well share its probability. The loss of its removal counts
+/// in full, that of an alternative by half, because it is that of a fit of few steps.
+double inclusion_of(const Weight& weight, const std::vector<Substitute>& substitutes) {
+  constexpr double most_certain = 0.995, most_loss = 600;  // [-2 ln L] beyond it nothing changes
+  double others = std::exp(-std::min(weight.loss, most_loss) / 2);
+  for (const Substitute& s : substitutes) others += std::exp(-std::max(s.loss, 0.0) / 4);
+  return most_certain / (1 + others);
+}
+
+/// [-2 ln L] Far from its operating point the loss that a linearization promises may be wrong by so much; for
+/// two shapes at a time, by less.
+constexpr double error_of_promise = 100, error_of_promise_for_two = 30;
+
 /// Computes the alternatives, and from them the probability of each member.
 void ask_rivals(const Trials& trials, Conclusion& result, Evidence& evidence,
                 const std::vector<Proposal>& exchanges, const std::vector<Candidate>& candidates,
                 Rivals& rivals, const FrictionAtReversals& at_reversals, double n) {
-  const double reach = rivals.reach();
-  // Far from its operating point the loss predicted by a linearization may be wrong by a hundred.
-  const double far = std::max(100.0, 3 * reach);
+  const double reach = rivals.reach(), far = std::max(error_of_promise, 3 * reach);
   const std::vector<Member>& members = result.estimate.members;
   std::vector<Proposal> several = evidence.exchanges_for_pairs();
   std::ranges::copy(exchanges, std::back_inserter(several));
-  const double far_off = std::max(30.0, reach);  // for two shapes at a time
+  const double far_off = std::max(error_of_promise_for_two, reach);
   std::erase_if(several, [&](const Proposal& p) { return p.gain < -far_off; });
   std::ranges::stable_sort(several, std::ranges::greater{}, &Proposal::gain);
   result.other_sets = other_sets(rivals, members, several);
@@ -241,9 +253,7 @@ void ask_rivals(const Trials& trials, Conclusion& result, Evidence& evidence,
     add_simpler_friction(result.substitutes.back(), trials, rivals, result.estimate, m, exchanges);
     for (const auto& [member, law] : at_reversals.not_excluded())
       if (member == m) add_if_new(result.substitutes.back(), law);
-    double others = std::exp(-std::min(result.weights[m].loss, 600.0) / 2);
-    for (const Substitute& s : result.substitutes[m]) others += std::exp(-std::max(s.loss, 0.0) / 4);
-    result.inclusion.push_back(0.995 / (1 + others));
+    result.inclusion.push_back(inclusion_of(result.weights[m], result.substitutes[m]));
   }
   add_blurred_shapes(trials, result, candidates);
   add_late_shapes(trials, result, rivals, swaps, candidates.size());

@@ -10,6 +10,8 @@ namespace {
 /// A level far below every force: what it does is linear, and bends nothing.
 constexpr double probe = 1e-3;  // [driving force]
 
+}  // namespace
+
 bool goes_one_way(const Trials& trials, const Estimate& estimate) {
   size_t forward = 0, backward = 0;
   for (size_t t = 0; t < trials.list.size(); ++t) {
@@ -20,6 +22,8 @@ bool goes_one_way(const Trials& trials, const Estimate& estimate) {
   }
   return forward == 0 || backward == 0;
 }
+
+namespace {
 
 /// A set with a little of a force beside it.
 Estimate with_little(Trials& trials, const Estimate& estimate, std::vector<Member> members,

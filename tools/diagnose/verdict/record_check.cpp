@@ -7,6 +7,7 @@
 #include "tools/diagnose/record/dead_sensor.h"
 #include "tools/diagnose/record/two_sensors.h"
 #include "tools/diagnose/search/leaps_of_input.h"
+#include "tools/diagnose/search/one_direction.h"
 #include "tools/diagnose/verdict/verdict.h"
 #include "tools/diagnose/wording.h"
 
@@ -23,6 +24,19 @@ std::optional<RecordFinding> too_few_rows(const Trials& trials) {
                   "reversals; rows at rest and just after a rest or a reversal do not count",
                   criteria::least_rows),
       true};
+}
+
+std::optional<RecordFinding> friction_along_the_way(const Trials& trials, const Estimate& estimate) {
+  const auto is_of_position = [](const Member& member) {
+    return member.candidate->law_of == LawOf::position && !member.candidate->is_unknown;
+  };
+  const auto member = std::ranges::find_if(estimate.members, is_of_position);
+  if (member == estimate.members.end() || trials.has_map() || !goes_one_way(trials, estimate)) return {};
+  return RecordFinding{
+      "all motion goes one way",
+      fmt::format("{} may also be friction that changes along the way: go back over the same way",
+                  shown_name(*member->candidate)),
+      false, false};
 }
 
 RecordFinding readings_are_false(size_t count, std::string consequence) {

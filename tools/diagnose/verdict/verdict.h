@@ -12,6 +12,9 @@ namespace loopwright::diagnosis {
 std::vector<RecordFinding> look_at_records(const Trials& trials, const std::vector<InverseDynamics>& inverse);
 /// Fatal: fewer fitted rows than a verdict needs.
 std::optional<RecordFinding> too_few_rows(const Trials& trials);
+/// Where all motion goes one way, a law of the position that was found may be friction that changes along the
+/// way.
+std::optional<RecordFinding> friction_along_the_way(const Trials& trials, const Estimate& estimate);
 
 /// Readings that are not those of their rows, and what was done about them: see loopwright::false_readings.
 RecordFinding readings_are_false(size_t count, std::string consequence);
