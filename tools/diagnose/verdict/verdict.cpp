@@ -32,6 +32,12 @@ void add_variables(std::vector<std::string>& list, std::string_view joined) {
   }
 }
 
+/// What the sensor's noise alone leaves: force noise does not repeat.
+double residual_of_sensor(const Trials& trials, Estimate estimate) {
+  estimate.noise.white = estimate.noise.step = 0;
+  return residual_floor(trials, estimate);
+}
+
 /// Why the residual force is no noise, in words; empty: it may be.
 /// `repeating`: the force that coarse counts feign, which is the same in every repeat of a motion.
 std::string force_above_noise(const Trials& trials, const std::vector<InverseDynamics>& inverse,
@@ -113,7 +119,7 @@ void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, c
                        conclusion.portmanteau > criteria::most_portmanteau;
   bool is_not_white = is_left || !(conclusion.is_white() || is_made_by_counts(trials, conclusion, diagnosis));
   const bool is_counted = conclusion.counts_portmanteau > criteria::most_portmanteau_of_counted;
-  const double repeating = is_counted ? diagnosis.noise_floor : 0;
+  const double repeating = is_counted ? residual_of_sensor(trials, e) : 0;
   if (std::string why = force_above_noise(trials, inverse, e.members, repeating); !why.empty())
     diagnosis.contradictions.push_back(std::move(why));
   else if (why = force_far_above_noise(trials, e.members, inverse, diagnosis); !why.empty())
