@@ -91,9 +91,8 @@ class AxisModel {
   bool set_added_inertia(double added);
   /// Of the user's own diagram.
   double nominal_inertia() const { return nominal_inertia_; }
-  bool has_mass() const {
-    return !inertia_parameter_.empty();
-  }  ///< a number of a block: see set_added_inertia
+  /// Of a block, to which set_added_inertia() can add.
+  bool has_mass() const { return !inertia_parameter_.empty(); }
   double nominal_damping() const { return nominal_damping_; }
 
   /// White noise acts as the input does, instead of on the role force; returns whether that differs.
