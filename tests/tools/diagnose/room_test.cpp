@@ -145,7 +145,7 @@ TEST(UsersCatalogue, MayBeAPartOfTheBuiltInOne) {
 /// Such a file can be inserted into a diagram; there is nothing to look for.
 TEST(UsersCatalogue, AnEffectOfWhichNothingIsFittedIsNotLookedFor) {
   HiddenAxis axis;
-  const std::string experiment = axis.record("record", axis.nominal(), there_and_back(0.1, 0.2));
+  const std::string experiment = axis.record("record", axis.nominal(), there_and_back());
   std::filesystem::create_directory(axis.file("own"));
   std::ofstream(axis.file("own/known.json")) << R"({
   "loopwright": 1, "effect": "known", "title": "Known", "physics": "Known from elsewhere.",

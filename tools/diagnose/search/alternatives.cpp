@@ -159,7 +159,7 @@ Estimate in_place_of(Trials& trials, const Estimate& estimate, size_t member,
   };
   Estimate best = fitted(without_one(estimate.members, member));
   for (const Substitute& other : substitutes) {
-    if (std::ranges::find(refused, other.candidate) != refused.end()) continue;
+    if (is_among(refused, *other.candidate)) continue;
     std::vector<Member> members = estimate.members;
     members[member] = at_start(*other.candidate);
     Estimate trial = fitted(std::move(members));

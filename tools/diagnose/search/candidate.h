@@ -96,6 +96,10 @@ inline bool is_dry_friction(const Candidate& candidate) {
          !candidate.linear.empty() && candidate.linear.front().name == "level";
 }
 
+inline bool is_among(const std::vector<const Candidate*>& list, const Candidate& candidate) {
+  return std::ranges::find(list, &candidate) != list.end();
+}
+
 inline bool is_late_member(const Member& member) { return is_late_input(*member.candidate); }
 inline bool has_dry_friction(const std::vector<Member>& members) {
   return std::ranges::any_of(members, [](const Member& m) { return is_dry_friction(*m.candidate); });

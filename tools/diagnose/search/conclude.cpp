@@ -261,7 +261,7 @@ void ask_rivals(const Trials& trials, Conclusion& result, Evidence& evidence,
 
 /// What was refused is no alternative either.
 void leave_out_refused(Conclusion& result, const std::vector<const Candidate*>& refused) {
-  const auto is_refused = [&](const Candidate* c) { return std::ranges::find(refused, c) != refused.end(); };
+  const auto is_refused = [&](const Candidate* c) { return is_among(refused, *c); };
   for (std::vector<Substitute>& list : result.substitutes)
     std::erase_if(list, [&](const Substitute& other) { return is_refused(other.candidate); });
   std::erase_if(result.other_sets,
@@ -327,7 +327,7 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
   std::vector<const Shape*> all;
   for (const auto* list : {&shapes, &periodic})
     for (const Shape& shape : *list)
-      if (std::ranges::find(refused, shape.candidate) == refused.end()) all.push_back(&shape);
+      if (!is_among(refused, *shape.candidate)) all.push_back(&shape);
   Evidence evidence(trials, estimate, all, candidates.size());
   const std::vector<Proposal> exchanges = evidence.exchanges();
   FrictionAtReversals at_reversals(trials, estimate, shapes, candidates.size(), refused);

@@ -53,7 +53,7 @@ std::vector<const Candidate*> other_laws(const Candidate& present, const std::ve
   for (const Shape& shape : shapes)
     if (is_dry_friction(present) && is_dry_friction(*shape.candidate) &&
         shape.candidate->name != present.name && (laws.empty() || laws.back() != shape.candidate) &&
-        std::ranges::find(refused, shape.candidate) == refused.end())
+        !is_among(refused, *shape.candidate))
       laws.push_back(shape.candidate);
   return laws;
 }

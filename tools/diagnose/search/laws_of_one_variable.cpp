@@ -38,8 +38,7 @@ std::vector<Shape> shapes_of_laws(const std::vector<Candidate>& candidates, LawO
                                   const Motion& motion, const std::vector<const Candidate*>& refused) {
   std::vector<const Candidate*> laws;
   for (const Candidate& candidate : candidates)
-    if (is_law_of(candidate, variable) && std::ranges::find(refused, &candidate) == refused.end())
-      laws.push_back(&candidate);
+    if (is_law_of(candidate, variable) && !is_among(refused, candidate)) laws.push_back(&candidate);
   const size_t most =
       std::clamp<size_t>(most_points_of_all / std::max<size_t>(laws.size(), 1), 2, most_points);
   std::vector<Shape> shapes;

@@ -75,9 +75,8 @@ std::optional<Estimate> Rivals::better(double doubt) {
 }
 
 bool Rivals::is_refused(const Proposal& proposal) const {
-  return std::ranges::any_of(proposal.added, [&](const Member& member) {
-    return std::ranges::find(refused_, member.candidate) != refused_.end();
-  });
+  return std::ranges::any_of(proposal.added,
+                             [&](const Member& member) { return is_among(refused_, *member.candidate); });
 }
 
 }  // namespace loopwright::diagnosis
