@@ -62,6 +62,15 @@ class Diagnosis(unittest.TestCase):
         result = diagnosed(903891)  # a drag of eddy currents is smooth friction, more square drag and less damping
         self.assertTrue(score.exact_or_declared(result), score.found_names(result))
 
+    def test_names_what_is_beside_a_load_in_a_gap(self):
+        seeds = {904359: "such a load swings on its flank between the blows, as one on a spring",
+                 904480: "a fit from another gap does not reach the right one",
+                 904805: "the load is thrown about, and no simulation shows what else is there"}
+        for seed, why in seeds.items():
+            with self.subTest(seed=seed, why=why):
+                result = diagnosed(seed)
+                self.assertTrue(score.exact(result), f"{score.true_names(result)} hidden, {score.found_names(result)} named")
+
     def test_finds_the_mass_behind_the_gap(self):
         result = diagnosed(130015)  # a lighter load on a harder contact is a maximum of the likelihood beside the true one
         self.assertEqual(score.found_names(result), ["backlash"])

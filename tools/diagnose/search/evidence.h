@@ -65,6 +65,8 @@ class Evidence {
   Proposal best_pair(bool one_without_name = false);
   /// A member, or two, replaced by one shape: the best for each candidate, best first.
   std::vector<Proposal> exchanges() const;
+  /// Some members replaced by one shape: every shape whose amplitudes are within their ranges, best first.
+  std::vector<Proposal> each_shape(const std::vector<size_t>& removed) const;
   /// A member, or two, replaced by two shapes, both of them needed: the best for each pair of candidates,
   /// best first.
   std::vector<Proposal> exchanges_for_pairs();

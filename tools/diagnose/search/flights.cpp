@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include "tools/diagnose/criteria.h"
+#include "tools/diagnose/search/gaps.h"
 #include "tools/diagnose/search/whiteness.h"
 
 namespace loopwright::diagnosis {
@@ -53,6 +54,16 @@ Estimate with_other_loads(Trials& trials, Estimate best, size_t load) {
   return best;
 }
 
+/// And another gap, where they still are not.
+Estimate with_other_gaps(Trials& trials, Estimate best, size_t load) {
+  if (!best.is_valid || portmanteau(trials, *best.fitted) <= 2 * criteria::portmanteau_lags) return best;
+  for (std::vector<Member>& members : other_gaps(trials, best, load)) {
+    Estimate other = fit_members(trials, std::move(members), best.noise, best.motion, iterations_in_flight);
+    if (other.is_valid && other.profile < best.profile - least_gain_of_other_load) best = std::move(other);
+  }
+  return best;
+}
+
 }  // namespace
 
 Estimate fitted_in_flight(Trials& trials, Estimate found) {
@@ -63,10 +74,11 @@ Estimate fitted_in_flight(Trials& trials, Estimate found) {
   const size_t load = size_t(flies - found.members.begin());
   const bool was_far = begin_anew(members[load]);
   Estimate best = fit_members(trials, found.members, found.noise, found.motion, iterations_in_flight);
-  if (!was_far) return with_other_loads(trials, std::move(best), load);
-  Estimate other = fit_members(trials, std::move(members), found.noise, found.motion, iterations_in_flight);
-  const bool is_better = other.is_valid && (!best.is_valid || other.profile < best.profile);
-  return with_other_loads(trials, std::move(is_better ? other : best), load);
+  if (was_far) {
+    Estimate other = fit_members(trials, std::move(members), found.noise, found.motion, iterations_in_flight);
+    if (other.is_valid && (!best.is_valid || other.profile < best.profile)) best = std::move(other);
+  }
+  return with_other_gaps(trials, with_other_loads(trials, std::move(best), load), load);
 }
 
 }  // namespace loopwright::diagnosis

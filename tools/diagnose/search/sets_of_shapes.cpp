@@ -198,4 +198,14 @@ std::vector<Proposal> Evidence::sets(const std::vector<size_t>& removed, size_t 
   return list;
 }
 
+std::vector<Proposal> Evidence::each_shape(const std::vector<size_t>& removed) const {
+  std::vector<Proposal> list;
+  const Errors errors = errors_without(removed);
+  for (size_t s = 0; s < shapes_.size(); ++s)
+    if (may_be_added(*shapes_[s], removed))
+      if (const auto gain = gain_of({s}, errors, n_)) list.push_back(with_step({s}, errors, *gain));
+  std::ranges::stable_sort(list, std::ranges::greater{}, &Proposal::gain);
+  return list;
+}
+
 }  // namespace loopwright::diagnosis

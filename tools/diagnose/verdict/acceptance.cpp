@@ -6,7 +6,9 @@
 #include <utility>
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/doubt.h"
+#include "tools/diagnose/search/rivals.h"
 #include "tools/diagnose/search/wandering_sensor.h"
+#include "tools/diagnose/search/whiteness.h"
 #include "tools/diagnose/wording.h"
 
 namespace loopwright::diagnosis {
@@ -59,7 +61,8 @@ class Judge {
         return why_worse(state, i);
     for (size_t i = 1; i < state.runs.size(); ++i)
       if (helps_nowhere(state, i) && !brings_own_load(state, i) && !is_answered(state, i) &&
-          helps_nowhere_beside_all(state, state.staircase.added[i].front()))
+          helps_nowhere_beside_all(state, state.staircase.added[i].front()) &&
+          !makes_errors_white(state, state.staircase.added[i].front()))
         return Refusal{state.staircase.added[i].front(),
                        "neither does the diagram simulate better with it, nor do the forces balance better"};
     if (state.conclusion.counts_portmanteau > criteria::most_portmanteau_of_counted && !state.runs.empty())
@@ -73,7 +76,7 @@ class Judge {
       for (size_t i = 1; i < state.runs.size(); ++i)
         for (size_t m : state.staircase.added[i])
           if (state.staircase.steps[i].is_optional && !is_own_load(state.conclusion.estimate.members[m]) &&
-              !helps(state, m))
+              !helps(state, m) && !makes_errors_white(state, m))
             return Refusal{m,
                            "what a load that flies leaves after its blows resembles it, and the diagram "
                            "simulates no better with it"};
@@ -195,6 +198,16 @@ class Judge {
     return !is_held_out(trials_, inverse_, all, member) &&
            helps_by(residual_size(trials_, inverse_, all).fitted,
                     residual_size(trials_, inverse_, others.members).fitted);
+  }
+  /// Beside a load that moves by itself neither simulation nor balance is more than a hint: an effect that
+  /// they do not ask for stands where the errors are white with it alone.
+  bool makes_errors_white(const Acceptance& state, size_t member) {
+    const Conclusion& all = state.conclusion;
+    if (!has_own_load(all.estimate.members) || !all.is_white() || all.comes_in_bursts) return false;
+    Estimate others = without_member(state, member).first;
+    maximise(trials_, others);
+    return portmanteau(trials_, *others.fitted) >
+           all.most_portmanteau + criteria::reach_of_counts * all.counts_portmanteau;
   }
   Refusal why_worse(const Acceptance& state, size_t step) {
     const std::string& unit = trials_.list.front().model->record().measured.front().unit;
