@@ -78,8 +78,7 @@ template <int States, int Ports> class SizedGainSteps : public GainSteps {
 
  public:
   SizedGainSteps(const LinearAxis& axis, const std::vector<SwitchedSample::Follows>& load, const Noise& noise,
-                 double nominal_inertia)
-      : push_(axis.push), memory_(noise.memory) {
+                 double nominal_inertia) {
     const Steady steady(axis, noise, nominal_inertia);
     const Eigen::Index own = axis.A.rows(), n = own + Eigen::Index(load.size()), p = axis.C.rows();
     Eigen::MatrixXd begins =
@@ -97,8 +96,9 @@ template <int States, int Ports> class SizedGainSteps : public GainSteps {
     C_.setZero(p, n + 1);
     C_.leftCols(own) = axis.C;
     R_ = steady.output.cwiseAbs2().asDiagonal();
-    PC_.resize(n + 1, p), K_.resize(n + 1, p), S_.resize(p, p), root_.resize(p, p),
-        next_.resize(n + 1, n + 1);
+    PC_.resize(n + 1, p), K_.resize(n + 1, p), S_.resize(p, p), whiten_.resize(p, p);
+    next_.resize(n + 1, n + 1);
+    onward_ = with_slow_force(Eigen::MatrixXd::Zero(n, n), axis.push, noise.memory);
   }
 
   const double* correct(Gains::Rows& rows) override {
@@ -106,31 +106,38 @@ template <int States, int Ports> class SizedGainSteps : public GainSteps {
     PC_.noalias() = P_ * C_.transpose();
     S_ = R_;
     S_.noalias() += C_ * PC_;
-    const Eigen::LLT<Seen> factor(S_);
-    K_ = factor.solve(PC_.transpose()).transpose();
-    root_ = factor.matrixL();
+    factor();
     P_.noalias() -= K_ * PC_.transpose();
-    const Seen whiten = root_.template triangularView<Eigen::Lower>().solve(Seen::Identity(p, p));
     rows.K.insert(rows.K.end(), K_.data(), K_.data() + n * p);
-    rows.whiten.insert(rows.whiten.end(), whiten.data(), whiten.data() + p * p);
-    rows.log_determinant.push_back(2 * root_.diagonal().array().log().sum());
+    rows.whiten.insert(rows.whiten.end(), whiten_.data(), whiten_.data() + p * p);
+    rows.log_determinant.push_back(-2 * whiten_.diagonal().array().log().sum());
     return K_.data();
   }
 
   void advance(const Eigen::MatrixXd& A) override {
-    const Square onward = with_slow_force(A, push_, memory_);
-    next_.noalias() = onward * P_;
+    onward_.topLeftCorner(A.rows(), A.cols()) = A;
+    next_.noalias() = onward_ * P_;
     P_ = Q_;
-    P_.noalias() += next_ * onward.transpose();
+    P_.noalias() += next_ * onward_.transpose();
     P_ = (0.5 * (P_ + P_.transpose())).eval();
   }
 
  private:
-  Eigen::VectorXd push_;
-  double memory_;
-  Square P_, Q_, next_;
+  /// Gains and whitening from the covariance of the errors.
+  void factor() {
+    if constexpr (Ports == 1) {
+      const double root = std::sqrt(S_(0, 0));
+      K_ = PC_ / root / root, whiten_(0, 0) = 1 / root;
+    } else {
+      const Eigen::LLT<Seen> factor(S_);
+      K_ = factor.solve(PC_.transpose()).transpose();
+      whiten_ = factor.matrixL().solve(Seen::Identity(S_.rows(), S_.cols()));
+    }
+  }
+
+  Square P_, Q_, next_, onward_;
   Eigen::Matrix<double, ports, states> C_;
-  Seen R_, S_, root_;
+  Seen R_, S_, whiten_;
   Correct PC_, K_;
 };
 

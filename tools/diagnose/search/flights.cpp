@@ -39,6 +39,16 @@ void change_load(Member& load, double factor) {
   load.nonlinear[1] = std::clamp(load.nonlinear[1] / std::sqrt(factor), frequency.low, frequency.high);
 }
 
+/// Fits members that begin elsewhere; whether they do clearly better.
+bool take_if_better(Trials& trials, Estimate& best, std::vector<Member> members) {
+  const double worst = best.profile - least_gain_of_other_load;
+  Estimate other =
+      fit_members(trials, std::move(members), best.noise, best.motion, iterations_in_flight, worst);
+  if (!other.is_valid || other.profile > worst) return false;
+  best = std::move(other);
+  return true;
+}
+
 /// A heavier and a lighter load on the same flank push alike for a moment: where the errors are not white,
 /// both are tried.
 Estimate with_other_loads(Trials& trials, Estimate best, size_t load) {
@@ -47,9 +57,7 @@ Estimate with_other_loads(Trials& trials, Estimate best, size_t load) {
     for (int n = 0; n < most_heavier; ++n) {
       std::vector<Member> members = best.members;
       change_load(members[load], factor);
-      Estimate other = fit_members(trials, std::move(members), best.noise, best.motion, iterations_in_flight);
-      if (!other.is_valid || other.profile > best.profile - least_gain_of_other_load) break;
-      best = std::move(other);
+      if (!take_if_better(trials, best, std::move(members))) break;
     }
   return best;
 }
@@ -57,10 +65,8 @@ Estimate with_other_loads(Trials& trials, Estimate best, size_t load) {
 /// And another gap, where they still are not.
 Estimate with_other_gaps(Trials& trials, Estimate best, size_t load) {
   if (!best.is_valid || portmanteau(trials, *best.fitted) <= 2 * criteria::portmanteau_lags) return best;
-  for (std::vector<Member>& members : other_gaps(trials, best, load)) {
-    Estimate other = fit_members(trials, std::move(members), best.noise, best.motion, iterations_in_flight);
-    if (other.is_valid && other.profile < best.profile - least_gain_of_other_load) best = std::move(other);
-  }
+  for (std::vector<Member>& members : other_gaps(trials, best, load))
+    take_if_better(trials, best, std::move(members));
   return best;
 }
 
