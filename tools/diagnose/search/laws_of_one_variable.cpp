@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include "tools/diagnose/criteria.h"
+#include "tools/diagnose/search/remembered_runs.h"
 
 namespace loopwright::diagnosis {
 namespace {
@@ -34,16 +35,18 @@ std::vector<std::vector<double>> points_of(const Candidate& candidate, size_t mo
   return points;
 }
 
-std::vector<Shape> shapes_of_laws(const std::vector<Candidate>& candidates, LawOf variable,
-                                  const Motion& motion, const std::vector<const Candidate*>& refused) {
+Shapes shapes_of_laws(const Trials& trials, const std::vector<Candidate>& candidates, LawOf variable,
+                      const Motion& motion, const std::vector<const Candidate*>& refused) {
   std::vector<const Candidate*> laws;
   for (const Candidate& candidate : candidates)
     if (is_law_of(candidate, variable) && !is_among(refused, candidate)) laws.push_back(&candidate);
   const size_t most =
       std::clamp<size_t>(most_points_of_all / std::max<size_t>(laws.size(), 1), 2, most_points);
-  std::vector<Shape> shapes;
-  for (const Candidate* law : laws) add_shapes(*law, points_of(*law, most), motion, shapes);
-  return shapes;
+  return trials.remembered->shapes(laws, motion, [&] {
+    std::vector<Shape> shapes;
+    for (const Candidate* law : laws) add_shapes(*law, points_of(*law, most), motion, shapes);
+    return shapes;
+  });
 }
 
 }  // namespace
@@ -55,9 +58,9 @@ std::vector<Proposal> other_laws(const Trials& trials, const Estimate& estimate,
   for (size_t m = 0; m < estimate.members.size(); ++m)
     if (is_law_of(*estimate.members[m].candidate, variable)) laws.push_back(m);
   if (laws.empty()) return {};
-  const std::vector<Shape> shapes = shapes_of_laws(candidates, variable, estimate.motion, refused);
+  const Shapes shapes = shapes_of_laws(trials, candidates, variable, estimate.motion, refused);
   std::vector<const Shape*> all;
-  for (const Shape& shape : shapes) all.push_back(&shape);
+  for (const Shape& shape : *shapes) all.push_back(&shape);
   Evidence evidence(trials, estimate, all, candidates.size());
   trials.work->add(size_t(evidence.rows()), double(all.size() * all.size()) * Work::of_a_product);
   return evidence.sets(laws, most_laws, double(fitted_numbers(trials)), most_loss);

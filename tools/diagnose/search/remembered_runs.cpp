@@ -1,5 +1,6 @@
 #include "tools/diagnose/search/remembered_runs.h"
 #include <algorithm>
+#include "tools/diagnose/search/evidence.h"
 
 namespace loopwright::diagnosis {
 namespace {
@@ -12,6 +13,16 @@ template <class Entries> auto& used(Entries& entries, typename Entries::iterator
 
 }  // namespace
 
+std::vector<uint64_t> RememberedRuns::identities(const Motion& motion) {
+  std::vector<uint64_t> paths;
+  for (const auto& path : motion.paths) paths.push_back(path->identity);
+  return paths;
+}
+
+bool RememberedRuns::may_change(const std::vector<uint64_t>& paths) {
+  return std::ranges::find(paths, uint64_t(0)) != paths.end();
+}
+
 RememberedRuns::Question RememberedRuns::question_of(const Trials& trials, const std::vector<Member>& members,
                                                      const Motion& motion, const Noise& noise) {
   Question question;
@@ -22,7 +33,7 @@ RememberedRuns::Question RememberedRuns::question_of(const Trials& trials, const
   }
   question.numbers.insert(question.numbers.end(), {noise.white, noise.step, noise.memory});
   question.numbers.insert(question.numbers.end(), noise.measurement.begin(), noise.measurement.end());
-  for (const auto& path : motion.paths) question.paths.push_back(path->identity);
+  question.paths = identities(motion);
   for (const Trial& trial : trials.list) question.rows.push_back(trial.rows());
   question.rows.push_back(trials.follows_flights);
   return question;
@@ -34,9 +45,8 @@ Results RememberedRuns::run(Trials& trials, const std::vector<Member>& members, 
     return std::make_shared<const std::vector<Fitted>>(run_members(trials, members, motion, noise));
   };
   Question question = question_of(trials, members, motion, noise);
-  // Without a motion where the noise enters is not yet decided; paths without an identity may change.
-  if (question.paths.empty() || std::ranges::find(question.paths, uint64_t(0)) != question.paths.end())
-    return anew();
+  // Without a motion where the noise enters is not yet decided.
+  if (question.paths.empty() || may_change(question.paths)) return anew();
   const auto known = std::ranges::find(runs_, question, &Run::question);
   if (known != runs_.end()) return used(runs_, known).results;
   for (const Trial& trial : trials.list)
@@ -68,6 +78,18 @@ std::shared_ptr<const std::vector<Sensitivity>> RememberedRuns::sensitivities(
   }
   keep({results, std::move(free), list});
   return list;
+}
+
+Shapes RememberedRuns::shapes(const std::vector<const Candidate*>& candidates, const Motion& motion,
+                              const std::function<std::vector<Shape>()>& anew) {
+  std::vector<uint64_t> paths = identities(motion);
+  const auto known = std::ranges::find_if(
+      shaped_, [&](const Shaped& s) { return s.candidates == candidates && s.paths == paths; });
+  if (known != shaped_.end() && !may_change(paths)) return used(shaped_, known).shapes;
+  if (shaped_.size() == most_shaped)
+    shaped_.pop_front();  // their columns are the largest of all that is kept
+  shaped_.push_back({candidates, std::move(paths), std::make_shared<const std::vector<Shape>>(anew())});
+  return shaped_.back().shapes;
 }
 
 size_t RememberedRuns::numbers_of(const Sensitive& sensitive) {

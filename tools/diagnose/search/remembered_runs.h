@@ -3,9 +3,13 @@
 #pragma once
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include "tools/diagnose/search/hypothesis.h"
 
 namespace loopwright::diagnosis {
+
+struct Shape;
+using Shapes = std::shared_ptr<const std::vector<Shape>>;
 
 /// The last runs, and the sensitivities of the very last ones. They are the same numbers as computed anew.
 class RememberedRuns {
@@ -16,10 +20,15 @@ class RememberedRuns {
   std::shared_ptr<const std::vector<Sensitivity>> sensitivities(const Trials& trials,
                                                                 const std::vector<Member>& members,
                                                                 const Motion& motion, const Results& results);
+  /// Shapes of candidates along a motion, made `anew` unless they are remembered.
+  Shapes shapes(const std::vector<const Candidate*>& candidates, const Motion& motion,
+                const std::function<std::vector<Shape>()>& anew);
 
  private:
   /// A result on a record of 56 s at 1 kHz has 3 MB.
   static constexpr size_t most_runs = 8;
+  /// Of laws of the velocity, and of the position.
+  static constexpr size_t most_shaped = 2;
   /// Each parameter has a column; functions without a name have up to sixty. In all, at most [numbers]:
   static constexpr size_t most_sensitivities = 3, most_numbers = 20'000'000;
 
@@ -40,6 +49,14 @@ class RememberedRuns {
     std::vector<FreeParameter> free;  ///< a pitch may be held or fitted
     std::shared_ptr<const std::vector<Sensitivity>> sensitivities;
   };
+  struct Shaped {
+    std::vector<const Candidate*> candidates;
+    std::vector<uint64_t> paths;
+    Shapes shapes;
+  };
+  static std::vector<uint64_t> identities(const Motion& motion);
+  /// Paths without an identity may change.
+  static bool may_change(const std::vector<uint64_t>& paths);
   static Question question_of(const Trials& trials, const std::vector<Member>& members, const Motion& motion,
                               const Noise& noise);
   static size_t numbers_of(const Sensitive& sensitive);
@@ -47,6 +64,7 @@ class RememberedRuns {
 
   std::deque<Run> runs_;             // the one used last at the end
   std::deque<Sensitive> sensitive_;  // the same
+  std::deque<Shaped> shaped_;        // the same
 };
 
 }  // namespace loopwright::diagnosis
