@@ -5,65 +5,15 @@
 #include <numbers>
 #include "models/random/philox.h"
 #include "models/real/whole.h"
+#include "models/statistics/smoother.h"
 
 namespace loopwright {
 namespace {
 
 using std::numbers::pi;
-using Matrix = Eigen::MatrixXd;
-using Vector_ = Eigen::VectorXd;
 
-constexpr int folds = 8, surrogates = 19;
-
-/// Two hat functions share each value: weights of the left and the right one.
-struct Hats {
-  double low = 0, step = 1;
-  int count = 2;
-  Hats(const std::vector<double>& values, int wanted) : count(wanted) {
-    const auto [least, most] = std::ranges::minmax(values);
-    low = least, step = std::max((most - least) / (count - 1), 1e-300);
-  }
-  std::pair<int, double> at(double value) const {
-    const double place = std::clamp((value - low) / step, 0.0, double(count - 1) - 1e-9);
-    return {int(place), place - std::floor(place)};
-  }
-};
-
-/// Share of the variance that hat functions explain on left-out folds, for a residual with signs per block.
-double cross_validated(const Rows& rows, const std::vector<double>& variable, int hats_count,
-                       const std::vector<double>& sign_of_block) {
-  const Hats hats(variable, hats_count);
-  std::vector<Matrix> gram(folds, Matrix::Zero(hats_count, hats_count));
-  std::vector<Vector_> right(folds, Vector_::Zero(hats_count));
-  const size_t n = rows.residual.size();
-  const auto value = [&](size_t i) { return rows.residual[i] * sign_of_block[size_t(rows.block[i])]; };
-  for (size_t i = 0; i < n; ++i) {
-    const int fold = rows.block[i] % folds;
-    const auto [j, w] = hats.at(variable[i]);
-    Matrix& g = gram[size_t(fold)];
-    g(j, j) += (1 - w) * (1 - w), g(j, j + 1) += w * (1 - w), g(j + 1, j) += w * (1 - w),
-        g(j + 1, j + 1) += w * w;
-    right[size_t(fold)](j) += (1 - w) * value(i), right[size_t(fold)](j + 1) += w * value(i);
-  }
-  Matrix all = Matrix::Zero(hats_count, hats_count);
-  Vector_ all_right = Vector_::Zero(hats_count);
-  for (int f = 0; f < folds; ++f) all += gram[size_t(f)], all_right += right[size_t(f)];
-  std::vector<Vector_> weights;
-  const double ridge = 1e-3 * all.trace() / hats_count + 1e-12;
-  for (int f = 0; f < folds; ++f) {
-    Matrix g = all - gram[size_t(f)];
-    g.diagonal().array() += ridge;
-    weights.push_back(g.ldlt().solve(all_right - right[size_t(f)]));
-  }
-  double before = 0, after = 0;
-  for (size_t i = 0; i < n; ++i) {
-    const auto [j, w] = hats.at(variable[i]);
-    const Vector_& c = weights[size_t(rows.block[i] % folds)];
-    const double left = value(i) - (1 - w) * c(j) - w * c(j + 1);
-    before += value(i) * value(i), after += left * left;
-  }
-  return before > 0 ? 1 - after / before : 0;
-}
+constexpr size_t folds = 8;
+constexpr int surrogates = 19;
 
 /// Signs that remove every dependence from a residual but leave each block unchanged.
 std::vector<double> random_signs(int blocks, int surrogate) {
@@ -177,12 +127,20 @@ Rows thinned(const MeasuredMotion& m, const std::vector<double>& residual) {
 
 Dependence explained_by(const Rows& rows, std::string name, const std::vector<double>& variable) {
   Dependence result{std::move(name)};
-  if (rows.residual.size() < 50 || rows.blocks < folds) return result;
-  const int count = result.variable == "direction" ? 2 : result.variable == "time" ? 10 : 24;
-  result.share = cross_validated(rows, variable, count, std::vector<double>(size_t(rows.blocks), 1.0));
-  for (int s = 0; s < surrogates; ++s)
-    result.by_chance =
-        std::max(result.by_chance, cross_validated(rows, variable, count, random_signs(rows.blocks, s)));
+  if (rows.residual.size() < 50 || rows.blocks < int(folds)) return result;
+  const size_t count = result.variable == "direction" ? 2 : result.variable == "time" ? 10 : 24;
+  const Hats hats = Hats::at_equal_distances(variable, count);
+  CrossValidation validation{{}, count, {}, folds};
+  for (size_t i = 0; i < variable.size(); ++i)
+    validation.places.push_back(hats.at(variable[i])),
+        validation.fold.push_back(size_t(rows.block[i]) % folds);
+  result.share = validation.share_of(rows.residual);
+  for (int s = 0; s < surrogates; ++s) {
+    const std::vector<double> signs = random_signs(rows.blocks, s);
+    std::vector<double> surrogate = rows.residual;
+    for (size_t i = 0; i < surrogate.size(); ++i) surrogate[i] *= signs[size_t(rows.block[i])];
+    result.by_chance = std::max(result.by_chance, validation.share_of(surrogate));
+  }
   if (result.share <= std::max(result.by_chance, 0.005)) result.share = 0;
   return result;
 }
@@ -223,30 +181,31 @@ double floor_of_smooth_parts(const Rows& rows) {
   int columns = 6 * lines;
   for (const Family& f : families) columns += f.count;
   std::vector<double> left = rows.residual;
-  Matrix design = Matrix::Zero(Eigen::Index(n), columns);
+  Eigen::MatrixXd design = Eigen::MatrixXd::Zero(Eigen::Index(n), columns);
   int at = 0;
   for (const Family& f : families) {
-    const Hats hats(*f.variable, f.count);
+    const Hats hats = Hats::at_equal_distances(*f.variable, size_t(f.count));
     for (size_t i = 0; i < n; ++i) {
-      const auto [j, w] = hats.at((*f.variable)[i]);
+      const auto [knot, w] = hats.at((*f.variable)[i]);
       const double factor = f.factor ? (*f.factor)[i] : 1;
-      design(Eigen::Index(i), at + j) += factor * (1 - w), design(Eigen::Index(i), at + j + 1) += factor * w;
+      const Eigen::Index column = at + Eigen::Index(knot);
+      design(Eigen::Index(i), column) += factor * (1 - w), design(Eigen::Index(i), column + 1) += factor * w;
     }
     at += f.count;
   }
   // Of the columns so far: those that are added leave the products of the others as they are.
-  Matrix products = Matrix::Zero(columns, columns);
+  Eigen::MatrixXd products = Eigen::MatrixXd::Zero(columns, columns);
   const auto add_products = [&](int from) {
     products.block(0, from, at, at - from).noalias() =
         design.leftCols(at).transpose() * design.middleCols(from, at - from);
     products.block(from, 0, at - from, from) = products.block(0, from, from, at - from).transpose();
   };
   const auto solve = [&] {
-    const Eigen::Map<const Vector_> r(rows.residual.data(), Eigen::Index(n));
+    const Eigen::Map<const Eigen::VectorXd> r(rows.residual.data(), Eigen::Index(n));
     const auto part = design.leftCols(at);
-    Matrix gram = products.topLeftCorner(at, at);
+    Eigen::MatrixXd gram = products.topLeftCorner(at, at);
     gram.diagonal().array() += 1e-6 * gram.trace() / at + 1e-12;
-    const Vector_ remainder = r - part * gram.ldlt().solve(part.transpose() * r);
+    const Eigen::VectorXd remainder = r - part * gram.ldlt().solve(part.transpose() * r);
     std::copy_n(remainder.data(), n, left.begin());
   };
   add_products(0);

@@ -380,8 +380,6 @@ constexpr size_t least_remainder = 200;
 constexpr size_t levels_along = 40, levels_of_velocity = 20, levels_of_acceleration = 12;
 /// [parts] Of the blocks, each tested with a function that the others determine.
 constexpr size_t folds = 5;
-/// [means] That say zero about each level: one that no row reaches stays near it.
-constexpr double ridge = 1e-3;
 
 // Sizes of the motion.
 

@@ -5,17 +5,10 @@
 #include "tools/report/typography.h"
 #include "tools/sweep/sensitivity.h"
 #include "tools/sweep/svg.h"
-#include "models/real/whole.h"
+#include "models/statistics/quantile.h"
 
 namespace loopwright {
 namespace {
-
-/// By nearest rank; sorts the values.
-double quantile(std::vector<double>& values, double share) {
-  if (values.empty()) return std::nan("");
-  std::sort(values.begin(), values.end());
-  return values[whole_index(std::round(share * double(values.size() - 1)), values.size())];
-}
 
 const std::vector<double>& metric_values(const SweepPlan& plan, const Recording& table, size_t metric) {
   return table.columns[1 + plan.sweep().axes.size() + metric].values;

@@ -9,7 +9,7 @@
 #include "tools/sweep/robustness.h"
 #include "tools/sweep/sensitivity.h"
 #include "tools/sweep/sweep_pictures.h"
-#include "models/real/whole.h"
+#include "models/statistics/quantile.h"
 
 namespace loopwright {
 namespace {
@@ -29,10 +29,6 @@ std::vector<double> sorted_finite(const std::vector<double>& values) {
     if (std::isfinite(v)) finite.push_back(v);
   std::sort(finite.begin(), finite.end());
   return finite;
-}
-double quantile(const std::vector<double>& sorted, double share) {
-  return sorted.empty() ? std::nan("")
-                        : sorted[whole_index(std::round(share * double(sorted.size() - 1)), sorted.size())];
 }
 std::string readable(double value) { return std::isfinite(value) ? fmt::format("{:.4g}", value) : "—"; }
 

@@ -1,6 +1,7 @@
 #include "tools/diagnose/search/evidence.h"
 #include <algorithm>
 #include <cmath>
+#include "models/statistics/information_criterion.h"
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/predict/in_parallel.h"
 #include "tools/diagnose/search/remembered_runs.h"
@@ -50,16 +51,12 @@ size_t parameters_of(const Candidate& candidate) {
   return (candidate.amplitude_is_one ? 0 : candidate.linear.size()) + candidate.nonlinear.size();
 }
 
-double price(size_t parameters, size_t effects, double n, size_t catalogue) {
-  return double(parameters) * std::log(n) + 2 * double(effects) * std::log(double(catalogue));
-}
-
 double criterion(const Trials& trials, const Estimate& estimate, size_t catalogue) {
   const double n = double(fitted_numbers(trials));
   size_t parameters = 0;
   for (const Member& member : estimate.members) parameters += parameters_of(*member.candidate);
   return estimate.profile + estimate.against_at_rest +
-         price(parameters, estimate.members.size(), n, catalogue);
+         extended_bayesian_price(parameters, estimate.members.size(), n, catalogue);
 }
 
 std::vector<Member> applied(const Proposal& proposal, std::vector<Member> members) {
@@ -271,9 +268,10 @@ std::optional<double> Evidence::gain_of(const std::vector<size_t>& shapes, const
   for (size_t s : shapes) {
     if (!is_feasible(*shapes_[s], added.theta, first)) return {};
     first += width_of(s);
-    cost += price(parameters_of(*shapes_[s]->candidate), 1, n, catalogue_);
+    cost += extended_bayesian_price(parameters_of(*shapes_[s]->candidate), 1, n, catalogue_);
   }
-  for (size_t m : errors.removed) cost -= price(parameters_of(*members_[m].candidate), 1, n, catalogue_);
+  for (size_t m : errors.removed)
+    cost -= extended_bayesian_price(parameters_of(*members_[m].candidate), 1, n, catalogue_);
   return n * std::log(explained_ / left_by(added.squares, errors.squares)) - cost;
 }
 
@@ -389,7 +387,7 @@ std::vector<double> Evidence::gains_of_removal(double n) const {
   for (size_t m = 0; m < members_.size(); ++m) {
     const Errors errors = errors_without({m});
     const double without = left_by(errors.members.squares, errors.squares);
-    gains.push_back(price(parameters_of(*members_[m].candidate), 1, n, catalogue_) -
+    gains.push_back(extended_bayesian_price(parameters_of(*members_[m].candidate), 1, n, catalogue_) -
                     n * std::log(without / explained_));
   }
   return gains;

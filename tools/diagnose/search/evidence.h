@@ -29,10 +29,8 @@ struct Proposal {
   double gain = 0;           ///< saving in the extended information criterion
 };
 
-/// Extended Bayesian information criterion (Chen and Chen 2008): what a set must save in n ln(mean square).
-double price(size_t parameters, size_t effects, double n, size_t catalogue);
 size_t parameters_of(const Candidate& candidate);
-/// n ln(mean square) + ln|S| + cost of the parameters; smaller is better.
+/// n ln(mean square) + ln|S| + the price of the parameters (extended Bayesian); smaller is better.
 double criterion(const Trials& trials, const Estimate& estimate, size_t catalogue);
 
 /// Whether shapes differ by more than the neighbours of a grid.

@@ -1,6 +1,7 @@
 #include "tools/diagnose/search/first_values.h"
 #include <algorithm>
 #include <cmath>
+#include "models/statistics/quantile.h"
 
 namespace loopwright::diagnosis::first_values {
 namespace {
@@ -14,12 +15,6 @@ double root_mean_square(std::span<const double> signal) {
   double square = 0;
   for (double s : signal) square += s * s;
   return std::sqrt(square / double(std::max<size_t>(1, signal.size())));
-}
-double quantile(std::span<const double> signal, double part) {
-  std::vector<double> sorted(signal.begin(), signal.end());
-  const auto at = sorted.begin() + std::ptrdiff_t(part * double(sorted.size() - 1));
-  std::ranges::nth_element(sorted, at);
-  return *at;
 }
 /// Of displacements, from the velocity: how far it goes from its mean path, in samples.
 double displacement(std::span<const double> velocity) {

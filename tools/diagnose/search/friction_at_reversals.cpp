@@ -1,6 +1,7 @@
 #include "tools/diagnose/search/friction_at_reversals.h"
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include "tools/diagnose/criteria.h"
 
 namespace loopwright::diagnosis {
@@ -27,6 +28,7 @@ std::vector<char> with_reversals(const Trial& trial, const Path& path) {
 }
 
 constexpr int iterations_of_a_law = 6;  // fitted to all rows
+constexpr size_t tried_shapes_of_a_law = 3;
 
 /// Other rows count as long as it lives.
 class OtherRows {
@@ -107,13 +109,23 @@ FrictionAtReversals::Rows FrictionAtReversals::on_all_rows(const std::vector<Mem
   return rows;
 }
 
+/// The best shapes of a law in the place of a member, according to all rows.
+std::vector<std::vector<double>> FrictionAtReversals::best_shapes(size_t member, const Candidate& law) {
+  const OtherRows counted(trials_, rows_);
+  std::vector<const Shape*> of_law;
+  for (const Shape& shape : shapes_)
+    if (shape.candidate == &law) of_law.push_back(&shape);
+  const Evidence evidence(trials_, present_.fitted, of_law, catalogue_, std::numeric_limits<size_t>::max());
+  std::vector<std::vector<double>> best;
+  for (const Proposal& proposal : evidence.each_shape({member}))
+    if (best.size() < tried_shapes_of_a_law) best.push_back(proposal.added.front().nonlinear);
+  return best;
+}
+
 FrictionAtReversals::Rows FrictionAtReversals::with_law(size_t member, const Candidate& law) {
-  // A level alone is about that of the present law; what comes beside it must be solved for.
-  const int first_iterations = law.linear.size() > 1 ? 1 : 0;
   Rows best;
-  for (const Shape& shape : shapes_) {
-    if (shape.candidate != &law) continue;
-    Rows rows = on_all_rows(exchanged(estimate_.members, member, law, shape.nonlinear), first_iterations);
+  for (const std::vector<double>& shape : best_shapes(member, law)) {
+    Rows rows = on_all_rows(exchanged(estimate_.members, member, law, shape), 1);
     if (rows.fitted.is_valid && (!best.fitted.is_valid || rows.fitted.profile < best.fitted.profile))
       best = std::move(rows);
   }

@@ -37,6 +37,7 @@ class FrictionAtReversals {
     std::vector<double> squares;  ///< after each reversal
   };
   Rows on_all_rows(const std::vector<Member>& members, int iterations);
+  std::vector<std::vector<double>> best_shapes(size_t member, const Candidate& law);
   Rows with_law(size_t member, const Candidate& law);
   double gain(const Rows& from, const Rows& to) const;
   bool explains(const Rows& one, const Rows& other, double least_gain) const;

@@ -5,6 +5,7 @@
 #include <functional>
 #include <numbers>
 #include "models/real/whole.h"
+#include "models/statistics/quantile.h"
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/remembered_runs.h"
 #include "tools/diagnose/search/weight.h"
@@ -13,14 +14,6 @@
 
 namespace loopwright::diagnosis {
 namespace {
-
-double quantile(std::vector<double> values, double fraction) {
-  if (values.empty()) return 0;
-  const auto at =
-      values.begin() + std::ptrdiff_t(whole_index(fraction * double(values.size() - 1), values.size()));
-  std::ranges::nth_element(values, at);
-  return *at;
-}
 
 /// [rows] Half of a time, at least one.
 size_t half_span(double seconds, double sample_time) {
@@ -46,7 +39,7 @@ double measurement_noise(const MeasuredPort& port) {
   for (size_t k = 3; k < port.value.size(); ++k)
     difference.push_back(
         std::abs(port.value[k] - 3 * port.value[k - 1] + 3 * port.value[k - 2] - port.value[k - 3]));
-  const double normal = quantile(difference, 0.5) / (0.6745 * std::sqrt(20.0));
+  const double normal = difference.empty() ? 0 : quantile(difference, 0.5) / (0.6745 * std::sqrt(20.0));
   double scale = 0;
   for (double v : port.value) scale = std::max(scale, std::abs(v));
   return std::max({normal, port.resolution / std::sqrt(12.0), criteria::least_sensor_noise * scale, 1e-15});
@@ -195,7 +188,7 @@ double usual_force(const Trials& trials, double held) {
       if (trial.moving[k]) sizes.push_back(std::abs(force[k] - held));
   }
   return sizes.empty() ? trials.force_rms
-                       : std::min(trials.force_rms, quantile(std::move(sizes), criteria::usual_share));
+                       : std::min(trials.force_rms, quantile(sizes, criteria::usual_share));
 }
 
 std::string names_of_ports(const AxisRecord& record) {
@@ -277,7 +270,7 @@ Trials prepare(const std::string& diagram, const std::vector<std::string>& exper
   const double held = mean_force(trials);
   trials.force_rms = std::max(force_rms(trials, held), criteria::least_change * std::abs(held));
   trials.noise = first_guess(trials);
-  const double rest_speed = criteria::rest_speed * quantile(speed, 0.99);
+  const double rest_speed = speed.empty() ? 0 : criteria::rest_speed * quantile(speed, 0.99);
   for (Trial& trial : trials.list) trial.pace = pace_of(*trial.model, trials.noise, rest_speed);
   trials.nominal_holds = std::ranges::any_of(
       trials.list, [&](Trial& trial) { return trial.model->holds_at_rest(1e-3 * trials.force_rms); });

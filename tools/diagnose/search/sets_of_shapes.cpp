@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include "models/statistics/information_criterion.h"
 #include "tools/diagnose/search/evidence.h"
 
 namespace loopwright::diagnosis {
@@ -89,9 +90,10 @@ std::optional<Proposal> Evidence::proposal_of(const std::vector<const Piece*>& s
   double cost = 0;
   for (const Piece* piece : set) {
     std::ranges::copy(piece->columns, std::back_inserter(columns));
-    cost += price(parameters_of(*shapes_[piece->shape]->candidate), 1, n, catalogue_);
+    cost += extended_bayesian_price(parameters_of(*shapes_[piece->shape]->candidate), 1, n, catalogue_);
   }
-  for (size_t m : errors.removed) cost -= price(parameters_of(*members_[m].candidate), 1, n, catalogue_);
+  for (size_t m : errors.removed)
+    cost -= extended_bayesian_price(parameters_of(*members_[m].candidate), 1, n, catalogue_);
   const double squares = add(G_, columns, errors.members, errors.b).squares;
   const Added added = add(G_, columns, errors.amplitudes, errors.b);
   Proposal proposal{errors.removed,

@@ -1,10 +1,10 @@
 #include "tools/diagnose/search/site_whiteness.h"
 #include <algorithm>
 #include <cmath>
+#include "models/statistics/portmanteau.h"
 #include "tools/diagnose/criteria.h"
 
 namespace loopwright::diagnosis {
-
 namespace {
 
 /// The whitened errors of an output that was read.
@@ -15,29 +15,20 @@ std::vector<double> whitened_errors(const SitePass& pass, size_t output, size_t 
   return e;
 }
 
-std::vector<double> correlations_within(const std::vector<double>& e) {
-  double square = 0;
-  for (double x : e) square += x * x;
-  std::vector<double> list;
-  for (size_t lag = 1; lag <= criteria::portmanteau_lags && lag < e.size(); ++lag) {
-    double product = 0;
-    for (size_t k = lag; k < e.size(); ++k) product += e[k] * e[k - lag];
-    list.push_back(square > 0 ? product / square : 0);
-  }
-  return list;
-}
-
 }  // namespace
 
 std::vector<double> correlations_of(const SitePass& pass, size_t output, size_t rows) {
-  return correlations_within(whitened_errors(pass, output, rows));
+  const std::vector<double> e = whitened_errors(pass, output, rows);
+  std::vector<double> list = lagged_products_of(e, criteria::portmanteau_lags);
+  const double square = list.front();
+  list.erase(list.begin()), list.resize(std::min(list.size(), e.empty() ? 0 : e.size() - 1));
+  for (double& r : list) r = square > 0 ? r / square : 0;
+  return list;
 }
 
 double portmanteau_of(const SitePass& pass, size_t output, size_t rows) {
   const std::vector<double> e = whitened_errors(pass, output, rows);
-  double sum = 0;
-  for (double r : correlations_within(e)) sum += r * r;
-  return double(e.size()) * sum;
+  return portmanteau(lagged_products_of(e, criteria::portmanteau_lags), double(e.size()));
 }
 
 double most_error_of_counts(const RecordedOutput& output) {

@@ -4,19 +4,12 @@
 #include <numbers>
 #include "models/random/philox.h"
 #include "models/real/whole.h"
+#include "models/statistics/portmanteau.h"
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/backward.h"
 
 namespace loopwright::diagnosis {
 namespace {
-
-/// n Σ ρ².
-double portmanteau(const LaggedProducts& products) {
-  const std::vector<double>& squares = products.sum;
-  double sum = 0;
-  for (size_t lag = 1; lag < squares.size(); ++lag) sum += squares[lag] * squares[lag];
-  return squares[0] > 0 ? products.rows * sum / (squares[0] * squares[0]) : 0;
-}
 
 /// A normal random number; the same for the same row and source of noise.
 double normal(size_t record, size_t source, size_t row) {
@@ -176,8 +169,10 @@ size_t rows_in_a_lag(const Trials& trials) {
 double portmanteau(const Trials& trials, const std::vector<Fitted>& fitted) {
   double most = 0;
   for (size_t port = 0; port < trials.ports(); ++port)
-    for (const size_t rows : {size_t(1), rows_in_a_lag(trials)})
-      most = std::max(most, portmanteau(lagged_products(trials, fitted, port, rows)));
+    for (const size_t rows : {size_t(1), rows_in_a_lag(trials)}) {
+      const LaggedProducts products = lagged_products(trials, fitted, port, rows);
+      most = std::max(most, loopwright::portmanteau(products.sum, products.rows));
+    }
   return most;
 }
 
