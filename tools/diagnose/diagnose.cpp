@@ -4,6 +4,7 @@
 #include <limits>
 #include "tools/diagnose/any_diagram.h"
 #include "tools/diagnose/criteria.h"
+#include "tools/diagnose/inquiry.h"
 #include "tools/diagnose/record/doubts_about_time.h"
 #include "tools/diagnose/search/catalogue.h"
 #include "tools/diagnose/search/conclude.h"
@@ -71,118 +72,15 @@ std::string_view name_of(Verdict verdict) {
 
 namespace {
 
-/// The records of one axis, and what can be concluded from them with the effects of a catalogue.
-class Inquiry {
- public:
-  Inquiry(Trials& trials, const Motion& motion, const Catalogue& catalogue, const RecordSizes& sizes,
-          const std::function<void(const char*, double)>& progress)
-      : trials_(trials),
-        motion_(motion),
-        catalogue_(catalogue),
-        unknown_(unknown_forces(sizes, trials.has_map(), trials.has_mass())),
-        progress_(progress) {}
-
-  /// From the fitted rows. `before`: what was concluded from fewer of them, and is kept where no work is
-  /// left.
-  Conclusion with_names(const Conclusion* before = nullptr) {
-    forget_reversals(trials_);
-    const std::vector<Shape>& shapes = shapes_along_fitted_rows();
-    progress_("searching", 0.4);
-    SearchResult searched = before && trials_.work->is_spent(criteria::work_of_search)
-                                ? found_again(before->estimate)
-                                : search(trials_, catalogue_.candidates, shapes, unknown_, fitted_motion_);
-    progress_("fitting effects and noise together", 0.7);
-    Conclusion conclusion = conclude(trials_, catalogue_.candidates, shapes, std::move(searched.estimate));
-    std::ranges::move(conclusion.trail, std::back_inserter(searched.trail));
-    conclusion.trail = std::move(searched.trail);
-    look_at_all_rows(conclusion);
-    return conclusion;
-  }
-  Conclusion without_names() {
-    const std::vector<Shape>& shapes = shapes_along_fitted_rows();
-    std::vector<const Candidate*> all;
-    for (const Candidate& candidate : catalogue_.candidates) all.push_back(&candidate);
-    Conclusion conclusion = conclude(trials_, catalogue_.candidates, shapes,
-                                     fit_members(trials_, {}, search_noise(trials_), fitted_motion_, 0), all);
-    look_at_all_rows(conclusion);
-    return conclusion;
-  }
-  /// The same without a member, which is refused from now on. What was found beside it may have needed it.
-  Conclusion without(const Conclusion& conclusion, size_t member) {
-    forget_reversals(trials_);
-    const std::vector<Shape>& shapes = shapes_along_fitted_rows();
-    const Estimate& e = conclusion.estimate;
-    refused_.push_back(e.members[member].candidate);
-    Conclusion rest = conclude(trials_, catalogue_.candidates, shapes,
-                               in_place_of(trials_, e, member, conclusion.substitutes[member], refused_,
-                                           catalogue_.candidates.size()),
-                               refused_);
-    look_at_all_rows(rest);
-    return rest;
-  }
-  /// Whether the held-out rows are explained much worse than the fitted rows.
-  bool holds_out_something_else(const Conclusion& conclusion) const {
-    return held_out_mean_square() > criteria::most_held_out * std::max(1.0, conclusion.estimate.mean_square);
-  }
-  void fit_all_rows() {
-    for (Trial& trial : trials_.list) trial.held_out_from = trial.usable.size();
-  }
-  double held_out_mean_square() const { return mean_square(trials_, *on_all_rows_.fitted, true); }
-  /// The motion of the last conclusion, including held-out rows.
-  const Motion& motion_of_all_rows() const { return on_all_rows_.motion; }
-
- private:
-  /// On the rows that are fitted now.
-  SearchResult found_again(const Estimate& e) {
-    constexpr int iterations = 8;
-    return {fit_members(trials_, e.members, e.noise, fitted_motion_, iterations), {}};
-  }
-  /// They are computed again only if other rows are fitted.
-  const std::vector<Shape>& shapes_along_fitted_rows() {
-    trials_.run_along(Trials::Rows::fitted);
-    std::vector<size_t> rows;
-    for (const Trial& trial : trials_.list) rows.push_back(trial.rows());
-    if (rows == rows_of_shapes_) return shapes_;
-    progress_("running every effect's blocks on the records", 0.1);
-    rows_of_shapes_ = std::move(rows);
-    fitted_motion_ = cut(motion_, trials_);
-    shapes_ = shapes_of(catalogue_.candidates, fitted_motion_);
-    add_without_doubt(trials_, fitted_motion_, shapes_);
-    return shapes_;
-  }
-  void look_at_all_rows(const Conclusion& conclusion) {
-    const Estimate& e = conclusion.estimate;
-    trials_.run_along(Trials::Rows::all);
-    on_all_rows_ = on_own_motion(trials_, fit_members(trials_, e.members, e.noise, motion_, 0));
-    leave_out_doubtful(trials_, on_all_rows_);
-    trials_.run_along(Trials::Rows::fitted);
-  }
-
-  Trials& trials_;
-  const Motion& motion_;
-  const Catalogue& catalogue_;
-  const std::vector<Candidate> unknown_;
-  const std::function<void(const char*, double)>& progress_;
-  Motion fitted_motion_;
-  std::vector<Shape> shapes_;  // along it
-  std::vector<size_t> rows_of_shapes_;
-  std::vector<const Candidate*> refused_;
-  Estimate on_all_rows_;
-};
-
 /// What can be concluded to the extent that the records permit; faults found in them are corrected.
 Conclusion conclusion_from(Inquiry& inquiry, std::vector<RecordFinding>& findings) {
   const auto is_certain = [](const RecordFinding& f) { return f.is_fatal && !f.may_be_physics; };
   const auto is_doubtful = [](const RecordFinding& f) { return f.is_fatal && f.may_be_physics; };
   if (std::ranges::any_of(findings, is_certain)) return inquiry.without_names();
   Conclusion conclusion = inquiry.with_names();
-  // What remains unexplained anyway also appears there.
-  if (conclusion.is_white() && inquiry.holds_out_something_else(conclusion)) {
-    inquiry.fit_all_rows();
+  if (inquiry.fits_all_rows())
     findings.push_back({"the part that was to be held out shows something that the other part does not",
                         "it was used for the fit too, and no error is held out"});
-    conclusion = inquiry.with_names(&conclusion);
-  }
   if (explains_lead(conclusion))
     std::erase_if(findings, is_doubtful);
   else if (std::ranges::any_of(findings, is_doubtful))

@@ -40,7 +40,7 @@ std::string SiteModel::state_name(int state) const {
 }
 
 void SiteModel::use(std::span<const double> factors, std::span<const SiteTerm> terms) {
-  for (const OwnRun& own : runs_) set_parameters(own.parameters, factors);
+  for (OwnRun& own : runs_) own.parameters.set(factors);
   for (SiteSignal& signal : signals_)
     signal.terms.clear(), signal.held = signal.ramp = 0, signal.remembering = -1;
   fronts_.clear();

@@ -170,9 +170,9 @@ class SiteModel {
   struct OwnRun {
     std::shared_ptr<const Plan> plan;
     std::unique_ptr<Run<double>> run;
-    double* numbers = nullptr;               // the arena's
-    std::vector<Input> inputs;               // of the record
-    std::vector<ModelParameter> parameters;  // as this record has them
+    double* numbers = nullptr;   // the arena's
+    std::vector<Input> inputs;   // of the record
+    ModelParameters parameters;  // as this record has them
     std::vector<std::span<char>> modes;
   };
 

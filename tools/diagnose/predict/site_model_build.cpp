@@ -283,24 +283,25 @@ void SiteModel::share_parameters(const Experiments& experiments) {
   };
   const auto in_all = [&](const std::string& name) {
     return std::ranges::all_of(runs_, [&](const OwnRun& own) {
-      return std::ranges::find(own.parameters, name, &ModelParameter::name) != own.parameters.end();
+      const std::vector<ModelParameter>& list = own.parameters.list;
+      return std::ranges::find(list, name, &ModelParameter::name) != list.end();
     });
   };
   std::vector<std::string> shared;
-  for (const ModelParameter& parameter : runs_.front().parameters)
+  for (const ModelParameter& parameter : runs_.front().parameters.list)
     if (in_all(parameter.name) && !is_known(parameter.name)) shared.push_back(parameter.name);
   for (OwnRun& own : runs_) {
     std::vector<ModelParameter> list;
     for (const std::string& name : shared)
-      list.push_back(std::move(*std::ranges::find(own.parameters, name, &ModelParameter::name)));
-    own.parameters = std::move(list);
+      list.push_back(std::move(*std::ranges::find(own.parameters.list, name, &ModelParameter::name)));
+    own.parameters.list = std::move(list);
   }
   for (size_t i = 0; i < shared.size(); ++i) {
-    const auto size = [&](const OwnRun& own) { return std::abs(own.parameters[i].nominal); };
-    const double least = std::ranges::min_element(runs_, {}, size)->parameters[i].nominal;
-    for (OwnRun& own : runs_) own.parameters[i].refer_to(least);
+    const auto size = [&](const OwnRun& own) { return std::abs(own.parameters.list[i].nominal); };
+    const double least = std::ranges::min_element(runs_, {}, size)->parameters.list[i].nominal;
+    for (OwnRun& own : runs_) own.parameters.list[i].refer_to(least);
   }
-  parameters_ = runs_.front().parameters;
+  parameters_ = runs_.front().parameters.list;
 }
 
 /// Sensors that count or sample are left out: their resolution is noise of the measurement.

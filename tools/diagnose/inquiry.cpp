@@ -1,0 +1,108 @@
+#include "tools/diagnose/inquiry.h"
+#include <algorithm>
+#include "tools/diagnose/criteria.h"
+#include "tools/diagnose/search/doubt.h"
+#include "tools/diagnose/search/friction_at_reversals.h"
+#include "tools/diagnose/search/replacement.h"
+#include "tools/diagnose/search/unknown.h"
+#include "tools/diagnose/search/whiteness.h"
+
+namespace loopwright::diagnosis {
+
+Inquiry::Inquiry(Trials& trials, const Motion& motion, const Catalogue& catalogue, const RecordSizes& sizes,
+                 const std::function<void(const char*, double)>& progress)
+    : trials_(trials),
+      motion_(motion),
+      catalogue_(catalogue),
+      unknown_(unknown_forces(sizes, trials.has_map(), trials.has_mass())),
+      progress_(progress) {}
+
+Conclusion Inquiry::with_names() {
+  const SearchResult found = searched();
+  const Estimate& e = found.estimate;
+  // What remains unexplained anyway also appears there.
+  const bool seems_explained = e.mean_square < criteria::well_explained &&
+                               portmanteau(trials_, *e.fitted) <= criteria::most_portmanteau_of_search;
+  if (seems_explained && holds_out_something_else(e)) return with_all_rows(found.trail, e);
+  const Conclusion conclusion = concluded(found.trail, e);
+  if (conclusion.is_white() && holds_out_something_else(conclusion.estimate))
+    return with_all_rows(conclusion.trail, conclusion.estimate);
+  return conclusion;
+}
+
+Conclusion Inquiry::without_names() {
+  const std::vector<Shape>& shapes = shapes_along_fitted_rows();
+  std::vector<const Candidate*> all;
+  for (const Candidate& candidate : catalogue_.candidates) all.push_back(&candidate);
+  Conclusion conclusion = conclude(trials_, catalogue_.candidates, shapes,
+                                   fit_members(trials_, {}, search_noise(trials_), fitted_motion_, 0), all);
+  look_at_all_rows(conclusion.estimate);
+  return conclusion;
+}
+
+Conclusion Inquiry::without(const Conclusion& conclusion, size_t member) {
+  forget_reversals(trials_);
+  const std::vector<Shape>& shapes = shapes_along_fitted_rows();
+  const Estimate& e = conclusion.estimate;
+  refused_.push_back(e.members[member].candidate);
+  Conclusion rest = conclude(
+      trials_, catalogue_.candidates, shapes,
+      in_place_of(trials_, e, member, conclusion.substitutes[member], refused_, catalogue_.candidates.size()),
+      refused_);
+  look_at_all_rows(rest.estimate);
+  return rest;
+}
+
+SearchResult Inquiry::searched(const Estimate* before) {
+  constexpr int iterations = 8;
+  forget_reversals(trials_);
+  const std::vector<Shape>& shapes = shapes_along_fitted_rows();
+  progress_("searching", 0.4);
+  if (before && trials_.work->is_spent(criteria::work_of_search))
+    return {fit_members(trials_, before->members, before->noise, fitted_motion_, iterations), {}};
+  return search(trials_, catalogue_.candidates, shapes, unknown_, fitted_motion_);
+}
+
+Conclusion Inquiry::concluded(std::vector<std::string> trail, const Estimate& found) {
+  progress_("fitting effects and noise together", 0.7);
+  Conclusion conclusion = conclude(trials_, catalogue_.candidates, shapes_along_fitted_rows(), found);
+  std::ranges::move(conclusion.trail, std::back_inserter(trail));
+  conclusion.trail = std::move(trail);
+  look_at_all_rows(conclusion.estimate);
+  return conclusion;
+}
+
+Conclusion Inquiry::with_all_rows(std::vector<std::string> trail, const Estimate& found) {
+  for (Trial& trial : trials_.list) trial.held_out_from = trial.usable.size();
+  fits_all_rows_ = true;
+  SearchResult again = searched(&found);
+  std::ranges::move(again.trail, std::back_inserter(trail));
+  return concluded(std::move(trail), again.estimate);
+}
+
+bool Inquiry::holds_out_something_else(const Estimate& estimate) {
+  look_at_all_rows(estimate);
+  return held_out_mean_square() > criteria::most_held_out * std::max(1.0, estimate.mean_square);
+}
+
+const std::vector<Shape>& Inquiry::shapes_along_fitted_rows() {
+  trials_.run_along(Trials::Rows::fitted);
+  std::vector<size_t> rows;
+  for (const Trial& trial : trials_.list) rows.push_back(trial.rows());
+  if (rows == rows_of_shapes_) return shapes_;
+  progress_("running every effect's blocks on the records", 0.1);
+  rows_of_shapes_ = std::move(rows);
+  fitted_motion_ = cut(motion_, trials_);
+  shapes_ = shapes_of(catalogue_.candidates, fitted_motion_);
+  add_without_doubt(trials_, fitted_motion_, shapes_);
+  return shapes_;
+}
+
+void Inquiry::look_at_all_rows(const Estimate& estimate) {
+  trials_.run_along(Trials::Rows::all);
+  on_all_rows_ = on_own_motion(trials_, fit_members(trials_, estimate.members, estimate.noise, motion_, 0));
+  leave_out_doubtful(trials_, on_all_rows_);
+  trials_.run_along(Trials::Rows::fitted);
+}
+
+}  // namespace loopwright::diagnosis
