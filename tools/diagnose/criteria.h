@@ -362,6 +362,8 @@ constexpr double least_benefit_of_a_correction = 0.99;
 constexpr double least_gain_of_a_correction_per_row = 0.02;
 /// [decrease of the error by all effects] Effects at the end that decrease it by less are optional.
 constexpr double knee = 0.05;
+/// [error of all effects] Unless without it more is left.
+constexpr double most_left_by_optional = 2;
 /// [decrease of the simulation error by all effects] One that decreases it by more is never optional.
 constexpr double most_optional_simulation = 0.5;
 

@@ -158,12 +158,15 @@ std::vector<double> AxisModel::net_forces(std::span<const double> position, std:
   const double T = record_.sample_time;
   double last = 0;  // over the sample before
   double push = 0;  // so that the axis keeps to the motion within a sample: what was missing in the last one
+  double elapsed = 0;  // [sample times]
   for (size_t k = 0; k < input.size(); ++k) {
     const double before = input[k > 0 ? k - 1 : 0],
                  mean = at == At::mean ? (before + input[k]) / 2 : input[k];
     if (record_.is_map) {
       net.push_back(net_force_at_rest(position[k], velocity[k], input[k], 0));
     } else if (!force_remembers_) {
+      run_->move_to(std::llround(elapsed * sample_ticks_));  // sources follow the time
+      elapsed += record_.duration.empty() ? 1 : record_.duration[k];
       net.push_back(net_force_along(position[k], velocity[k], mean, 0));
     } else {
       if (k > 0 && nominal_inertia_ > 0) push = nominal_inertia_ * (velocity[k] - velocity[k - 1]) / T - last;

@@ -106,8 +106,14 @@ void mark_knee(std::vector<DiagnosisStep>& steps) {
     const double whole = steps.front().*error - steps.back().*error;
     return steps[i - 1].*error - steps[i].*error <= criteria::knee * whole;
   };
+  // Small beside what was missing first, but without it much more is left than all leave.
+  const auto is_missed = [&](double DiagnosisStep::*error, size_t i) {
+    const double least = steps.back().*error;
+    return least == 0 || steps[i - 1].*error > criteria::most_left_by_optional * least;
+  };
   for (size_t i = steps.size(); i-- > 1;) {
     if (!is_small(&DiagnosisStep::force_rmse, i) || !is_small(&DiagnosisStep::held_out_force_rmse, i)) break;
+    if (is_missed(&DiagnosisStep::force_rmse, i) && is_missed(&DiagnosisStep::held_out_force_rmse, i)) break;
     steps[i].is_optional = true;
   }
 }
