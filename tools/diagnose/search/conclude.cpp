@@ -243,7 +243,8 @@ void ask_rivals(const Trials& trials, Conclusion& result, Evidence& evidence,
   std::vector<Proposal> near = swaps;
   for (const Proposal& p : exchanges)
     if (p.gain > -far && !contains(swaps, p)) near.push_back(p);
-  std::ranges::move(gaps_for_springs(trials, result.estimate, candidates), std::back_inserter(near));
+  if (!rivals.is_spent())
+    std::ranges::move(gaps_for_springs(trials, result.estimate, candidates), std::back_inserter(near));
   const std::vector<OtherSet> laws = laws_beside(trials, result.estimate, candidates, rivals, far_off);
   add_laws(laws, result.other_sets);
   const std::vector<double> removal = evidence.gains_of_removal(n);
