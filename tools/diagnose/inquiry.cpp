@@ -4,6 +4,7 @@
 #include "tools/diagnose/search/doubt.h"
 #include "tools/diagnose/search/friction_at_reversals.h"
 #include "tools/diagnose/search/replacement.h"
+#include "tools/diagnose/search/rivals.h"
 #include "tools/diagnose/search/unknown.h"
 #include "tools/diagnose/search/whiteness.h"
 
@@ -23,7 +24,8 @@ Conclusion Inquiry::with_names() {
   // What remains unexplained anyway also appears there.
   const bool seems_explained = e.mean_square < criteria::well_explained &&
                                portmanteau(trials_, *e.fitted) <= criteria::most_portmanteau_of_search;
-  if (seems_explained && holds_out_something_else(e)) return with_all_rows(found.trail, e);
+  if (seems_explained && holds_out_something_else(e) && holds_out_something_else(with_fitted_noise(e)))
+    return with_all_rows(found.trail, e);
   const Conclusion conclusion = concluded(found.trail, e);
   if (conclusion.is_white() && holds_out_something_else(conclusion.estimate))
     return with_all_rows(conclusion.trail, conclusion.estimate);
@@ -78,6 +80,12 @@ Conclusion Inquiry::with_all_rows(std::vector<std::string> trail, const Estimate
   SearchResult again = searched(&found);
   std::ranges::move(again.trail, std::back_inserter(trail));
   return concluded(std::move(trail), again.estimate);
+}
+
+Estimate Inquiry::with_fitted_noise(Estimate estimate) {
+  leave_out_doubtful(trials_, estimate);
+  maximise(trials_, estimate);
+  return estimate;
 }
 
 bool Inquiry::holds_out_something_else(const Estimate& estimate) {

@@ -30,6 +30,8 @@ class Inquiry {
   /// After what was tried before.
   Conclusion concluded(std::vector<std::string> trail, const Estimate& found);
   Conclusion with_all_rows(std::vector<std::string> trail, const Estimate& found);
+  /// The noise of the search is known only partly.
+  Estimate with_fitted_noise(Estimate estimate);
   /// Whether the held-out rows are explained much worse than the fitted rows.
   bool holds_out_something_else(const Estimate& estimate);
   /// They are computed again only if other rows are fitted.

@@ -20,6 +20,9 @@ TEST(Quantile, IsTheValueOfNearestRank) {
   EXPECT_EQ(quantile(std::vector{7.0}, 0.99), 7);
   EXPECT_EQ(quantile(std::vector{1.0, std::numeric_limits<double>::infinity()}, 0), 1);
   EXPECT_TRUE(std::isnan(quantile({}, 0.5)));
+  EXPECT_EQ(lower_quantile(values, 0.7), 3);
+  EXPECT_EQ(lower_quantile(values, 1), 5);
+  EXPECT_TRUE(std::isnan(lower_quantile({}, 0.5)));
 }
 
 TEST(ExtendedBayesianPrice, CountsParametersAndChoices) {

@@ -71,7 +71,7 @@ TEST(ImprovedDiagram, ContainsAnUnknownFunctionAsALookupWithItsRange) {
 /// What is written without --all is the diagram of the last step that is not optional.
 TEST(ImprovedDiagram, LeavesOptionalEffectsOutUnlessAllAreWanted) {
   HiddenMachine machine;
-  machine.force_noise = 0.002;
+  machine.force_noise = 0.03;
   HiddenAxis axis(machine);
   Physics truth = axis.nominal();
   truth.coulomb_n = 0.6, truth.cogging = {0.03, 0.024, 0.3};

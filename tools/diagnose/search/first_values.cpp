@@ -49,14 +49,14 @@ Starts stribeck_speeds(std::span<const double> signal) {
 Starts levels(std::span<const double> signal) {
   Starts list;
   for (double part : {0.1, 0.25, 0.4, 0.55, 0.7, 0.8, 0.88, 0.94, 0.97})
-    list.push_back({quantile(signal, part), 0});
+    list.push_back({lower_quantile(signal, part), 0});
   return list;
 }
 /// Of which the signal falls short for a part of the record.
 Starts levels_above(std::span<const double> signal) {
   Starts list;
   for (double part : {0.03, 0.06, 0.12, 0.2, 0.3, 0.45, 0.6, 0.75, 0.9})
-    list.push_back({quantile(signal, part), 0});
+    list.push_back({lower_quantile(signal, part), 0});
   return list;
 }
 /// From two periods in the range of the signal up; neighbours differ by a quarter of a period at the end of

@@ -39,7 +39,7 @@ double measurement_noise(const MeasuredPort& port) {
   for (size_t k = 3; k < port.value.size(); ++k)
     difference.push_back(
         std::abs(port.value[k] - 3 * port.value[k - 1] + 3 * port.value[k - 2] - port.value[k - 3]));
-  const double normal = difference.empty() ? 0 : quantile(difference, 0.5) / (0.6745 * std::sqrt(20.0));
+  const double normal = difference.empty() ? 0 : lower_quantile(difference, 0.5) / (0.6745 * std::sqrt(20.0));
   double scale = 0;
   for (double v : port.value) scale = std::max(scale, std::abs(v));
   return std::max({normal, port.resolution / std::sqrt(12.0), criteria::least_sensor_noise * scale, 1e-15});
@@ -188,7 +188,7 @@ double usual_force(const Trials& trials, double held) {
       if (trial.moving[k]) sizes.push_back(std::abs(force[k] - held));
   }
   return sizes.empty() ? trials.force_rms
-                       : std::min(trials.force_rms, quantile(sizes, criteria::usual_share));
+                       : std::min(trials.force_rms, lower_quantile(sizes, criteria::usual_share));
 }
 
 std::string names_of_ports(const AxisRecord& record) {
@@ -270,7 +270,7 @@ Trials prepare(const std::string& diagram, const std::vector<std::string>& exper
   const double held = mean_force(trials);
   trials.force_rms = std::max(force_rms(trials, held), criteria::least_change * std::abs(held));
   trials.noise = first_guess(trials);
-  const double rest_speed = speed.empty() ? 0 : criteria::rest_speed * quantile(speed, 0.99);
+  const double rest_speed = speed.empty() ? 0 : criteria::rest_speed * lower_quantile(speed, 0.99);
   for (Trial& trial : trials.list) trial.pace = pace_of(*trial.model, trials.noise, rest_speed);
   trials.nominal_holds = std::ranges::any_of(
       trials.list, [&](Trial& trial) { return trial.model->holds_at_rest(1e-3 * trials.force_rms); });
