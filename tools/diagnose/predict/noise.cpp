@@ -96,7 +96,7 @@ template <int States, int Ports> class SizedGainSteps : public GainSteps {
     C_.setZero(p, n + 1);
     C_.leftCols(own) = axis.C;
     R_ = steady.output.cwiseAbs2().asDiagonal();
-    PC_.resize(n + 1, p), K_.resize(n + 1, p), S_.resize(p, p), whiten_.resize(p, p);
+    PC_.resize(n + 1, p), K_.resize(n + 1, p), S_.resize(p, p), root_.resize(p, p), whiten_.resize(p, p);
     next_.resize(n + 1, n + 1);
     onward_ = with_slow_force(Eigen::MatrixXd::Zero(n, n), axis.push, noise.memory);
   }
@@ -110,7 +110,7 @@ template <int States, int Ports> class SizedGainSteps : public GainSteps {
     P_.noalias() -= K_ * PC_.transpose();
     rows.K.insert(rows.K.end(), K_.data(), K_.data() + n * p);
     rows.whiten.insert(rows.whiten.end(), whiten_.data(), whiten_.data() + p * p);
-    rows.log_determinant.push_back(-2 * whiten_.diagonal().array().log().sum());
+    rows.log_determinant.push_back(2 * root_.diagonal().array().log().sum());
     return K_.data();
   }
 
@@ -127,17 +127,19 @@ template <int States, int Ports> class SizedGainSteps : public GainSteps {
   void factor() {
     if constexpr (Ports == 1) {
       const double root = std::sqrt(S_(0, 0));
-      K_ = PC_ / root / root, whiten_(0, 0) = 1 / root;
+      const double whiten = 1 / root;
+      K_ = PC_ * whiten * whiten, root_(0, 0) = root, whiten_(0, 0) = whiten;
     } else {
       const Eigen::LLT<Seen> factor(S_);
       K_ = factor.solve(PC_.transpose()).transpose();
+      root_ = factor.matrixL();
       whiten_ = factor.matrixL().solve(Seen::Identity(S_.rows(), S_.cols()));
     }
   }
 
   Square P_, Q_, next_, onward_;
   Eigen::Matrix<double, ports, states> C_;
-  Seen R_, S_, whiten_;
+  Seen R_, S_, root_, whiten_;
   Correct PC_, K_;
 };
 
