@@ -194,9 +194,9 @@ class OfDiagram {
   }
 
  private:
-  /// All parameters a little apart, by factors of their own.
+  /// All parameters a few per cent off, each by a factor of its own, so that no two cancel.
   void state_what_is_no_product() {
-    constexpr double same = 1e-6;
+    constexpr double same = 1e-6;  // relative: rounding is far smaller, the terms of a sum far larger
     std::vector<double> factors;
     for (size_t i = 0; i < found_.list.size(); ++i) factors.push_back(1.02 + 0.01 * double(i % 9));
     const Changed there(diagram_, options_, found_.list, factors);
