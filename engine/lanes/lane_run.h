@@ -44,6 +44,9 @@ class LaneRun {
   virtual int64_t integrate(int64_t ticks) = 0;
   /// The present signals and states: to[i · lanes() + lane]. Undefined in a lane that has failed.
   virtual void read(std::span<const Number> numbers, double* to) const = 0;
+  /// Appends what a lane of the first arena remembers in accepted memory: the numbers of its blocks in order.
+  /// Only of plans whose blocks with memory all run on SIMD lanes.
+  virtual void accepted_memory(int lane, std::vector<double>& to) const = 0;
   /// Lanes that have failed, one bit each; the others continue.
   virtual uint64_t failed() const = 0;
   virtual LaneFailure failure(int lane) const = 0;

@@ -57,6 +57,11 @@ template <class Real> class LaneRunOf final : public LaneRun {
     for (const Number n : numbers)
       for (int r = 0; r < arenas_; ++r, to += width) std::memcpy(to, &run_.number(n, r), sizeof(Real));
   }
+  void accepted_memory(int lane_number, std::vector<double>& to) const override {
+    for (size_t b = 0; b < plan_.blocks.size(); ++b)
+      for (const int word : plan_.blocks[b].type->info.memory_numbers)
+        to.push_back(lane(static_cast<const Real*>(run_.call(int(b)).memory)[word], lane_number));
+  }
   uint64_t failed() const override { return failed_; }
   LaneFailure failure(int lane) const override {
     return failed_ >> lane & 1 ? failures_[size_t(lane)] : LaneFailure{};

@@ -179,6 +179,19 @@ bool remembers(const Plan& plan) {
          });
 }
 
+/// Whether all that is remembered is accepted memory, and all of that is numbers.
+bool remembers_way(const Plan& plan) {
+  const bool decides_nothing = std::ranges::all_of(
+      plan.order, [](const Plan::Entry& e) { return e.kind == Plan::Entry::Kind::outputs; });
+  return decides_nothing && plan.states == 0 &&
+         std::ranges::all_of(plan.blocks, [](const Plan::Block& block) {
+           const BlockInfo& info = block.type->info;
+           if (info.type == "ExternalSignal") return true;
+           return !info.uses_time && !info.is_sampled && info.buffers == 0 &&
+                  info.memory_numbers.size() * sizeof(double) == block.type->kernels.memory_size;
+         });
+}
+
 /// Parameters that change between runs must lead to numbers that a run can change.
 void check_bindings(const EffectPlan& result, Problems& problems) {
   Run<double> run(result.plan);
@@ -239,6 +252,7 @@ std::shared_ptr<const EffectPlan> compile_effect(const Effect& effect, const Mac
     result->acts_on_sensor = std::ranges::any_of(
         effect.attachments, [](const Attachment& a) { return a.to == Attachment::To::sensor; });
     result->remembers = result->integral >= 0 || remembers(*plan);
+    result->remembers_way = result->remembers && result->integral < 0 && remembers_way(*plan);
     result->flies = plan->states > 1 && std::ranges::any_of(plan->blocks, [](const Plan::Block& block) {
                       return !block.type->info.crossings.empty() && block.path != "integral";
                     });

@@ -24,6 +24,8 @@ struct EffectPlan {
   bool acts_on_sensor = false;
   bool flies = false;     ///< has states of its own, and contact that closes and opens
   bool remembers = true;  ///< otherwise a sample depends only on itself, not even on time
+  /// Remembers nothing but accepted memory, of numbers: see SegmentRun.
+  bool remembers_way = false;
   /// Has states, which and whose force are linear in the signals and in themselves, and nothing else that
   /// remembers: see EffectRun.
   bool is_linear = false;

@@ -2,36 +2,13 @@
 #pragma once
 #include <memory>
 #include <span>
-#include "engine/lanes/lane_run.h"
+#include "tools/effects/effect_lanes.h"
 #include "tools/effects/effect_plan.h"
 #include "tools/effects/linear_effect.h"
+#include "tools/effects/role_signals.h"
+#include "tools/effects/segment_run.h"
 
 namespace loopwright {
-
-/// The signals that the effect may read at one sample; roles that it does not read are ignored.
-struct RoleSample {
-  double position = 0, velocity = 0, acceleration = 0, input = 0, force = 0;
-  /// At the next sample; NaN: the velocity is extrapolated with constant acceleration. Leave it NaN if the
-  /// value must not depend on later measurements.
-  double next_velocity = std::numeric_limits<double>::quiet_NaN();
-  double next_acceleration = std::numeric_limits<double>::quiet_NaN();
-  double velocity_bow = 0;  ///< see RoleSignals
-};
-
-/// Columns of a record, or of a predictor; empty if the effect does not read them.
-struct RoleSignals {
-  std::span<const double> position, velocity, acceleration, input, force;
-  /// True: within a sample velocity and acceleration are interpolated to those of the next sample, which is
-  /// best for an analysis of the whole record. False: they are extrapolated from velocity and acceleration,
-  /// so that row k depends only on rows up to k.
-  bool looks_ahead = false;
-  /// By how much the mean velocity of a sample exceeds the middle between those at its ends; empty: straight
-  /// lines.
-  std::span<const double> velocity_bow;
-
-  size_t rows() const;
-  RoleSample at(size_t row) const;
-};
 
 /// Runs an effect on SIMD lanes: several sets of parameters in parallel if requested, and, if the effect has
 /// no memory, many samples of one set. Its result for each sample is
@@ -75,51 +52,29 @@ class EffectRun {
   void column(const RoleSignals& signals, size_t parameter, std::span<double> values);
 
  private:
-  struct Setting {  // a parameter of an ExternalSignal, in every lane
-    std::vector<double*> lanes;
-    bool is_row = false;  // lanes are adjacent
-    void set(double to) const;
-  };
-  struct Wire {
-    Setting value, slope, bend, since;
-  };
-  Wire wire(const char* role);
-  /// Back to rest at the first sample.
-  void start(const RoleSample& first);
-  /// Slopes of velocity and acceleration within a sample.
-  double gain_of(const RoleSample& sample) const;
-  double jerk_of(const RoleSample& sample) const;
-  GivenSignals given_at(const RoleSample& sample) const;
-  /// Sets `value_` and `slope_` to those of the next sample, one per lane.
+  /// Sets value and slope of the lanes to those of the next sample.
   void step(const RoleSample& sample);
-  /// The same at the two Gauss points of the present sample, which begins `now`.
-  void mean_from(double now);
   /// The same of the first `rows` of `samples_` for an effect without memory, one per lane.
   void mean_of(size_t rows, double now);
   void give_at(double fraction, size_t rows);
   void integrate_sample();
-  /// Present output of its blocks: the value, and the slope that they state.
-  void read_held();
   /// Passes each value and slope to take(lane, row, value, slope).
   template <class Take> void run_lanes(const RoleSignals& signals, size_t rows, size_t lanes, Take&& take);
   template <class Take> void run_in_turn(const RoleSignals& signals, size_t rows, size_t lanes, Take&& take);
+  template <class Take>
+  bool run_in_segments(const RoleSignals& signals, size_t rows, size_t lanes, Take&& take);
   template <class Take> void run_side_by_side(const RoleSignals& signals, size_t rows, Take&& take);
   template <class Take> void superpose(const RoleSignals& signals, size_t rows, size_t lanes, Take&& take);
   template <class Take> void follow_modes(const RoleSignals& signals, size_t rows, size_t lanes, Take&& take);
-  /// To all lanes.
-  void give(const GivenSignals& given, double now);
-  void read(Number number, std::vector<double>& to) const { run_->read({&number, 1}, to.data()); }
 
   std::shared_ptr<const EffectPlan> plan_;
   std::vector<double> starts_;               // of each fitted parameter
   std::vector<std::vector<double>> fitted_;  // of each set
   std::unique_ptr<EffectSample> linear_;     // of a linear effect
-  std::unique_ptr<LaneRun> run_;             // empty, as all that follows, where samples have maps
-  std::vector<std::vector<double*>> bound_;
-  Wire position_, velocity_, acceleration_, input_, force_;
-  int64_t sample_ticks_ = 1;
-  std::vector<RoleSample> samples_;                                              // one per lane
-  std::vector<double> value_, slope_, stated_slope_, integral_, second_, area_;  // one per lane
+  std::unique_ptr<SegmentRun> segments_;     // of a few sets of what remembers only accepted memory
+  std::unique_ptr<EffectLanes> lanes_;       // empty, as all that follows, where samples have maps
+  std::vector<RoleSample> samples_;          // one per lane
+  std::vector<double> slope_, integral_, before_, area_;  // one per lane
 };
 
 }  // namespace loopwright

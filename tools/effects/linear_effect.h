@@ -1,23 +1,15 @@
 /// Effects that are linear in their states and in the signals that they are given, as a load on a spring or a
 /// lag is: a sample of theirs is a product with a matrix, which costs a small part of integrating it.
 #pragma once
-#include <array>
 #include <memory>
 #include <span>
 #include <string>
 #include <vector>
 #include "engine/run/run.h"
 #include "tools/effects/effect_plan.h"
+#include "tools/effects/role_signals.h"
 
 namespace loopwright {
-
-/// What an effect is given at the start of a sample. Within it the position is a parabola, velocity and
-/// acceleration are straight lines; input and force are held.
-struct GivenSignals {
-  enum Index { position, velocity, velocity_slope, acceleration, acceleration_slope, input, force, count };
-  std::array<double, count> value{};
-  double operator[](Index i) const { return value[i]; }
-};
 
 /// One sample of a linear effect: the states after it, and the mean and the slope of its force (see
 /// EffectRun), from the states before it and the given signals.

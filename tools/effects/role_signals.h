@@ -1,0 +1,48 @@
+/// The signals of a record, by the roles under which an effect reads them.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <span>
+
+namespace loopwright {
+
+/// What an effect is given at the start of a sample. Within it the position is a parabola, velocity and
+/// acceleration are straight lines; input and force are held.
+struct GivenSignals {
+  enum Index { position, velocity, velocity_slope, acceleration, acceleration_slope, input, force, count };
+  std::array<double, count> value{};
+  double operator[](Index i) const { return value[i]; }
+};
+
+/// The signals that the effect may read at one sample; roles that it does not read are ignored.
+struct RoleSample {
+  double position = 0, velocity = 0, acceleration = 0, input = 0, force = 0;
+  /// At the next sample; NaN: the velocity is extrapolated with constant acceleration. Leave it NaN if the
+  /// value must not depend on later measurements.
+  double next_velocity = std::numeric_limits<double>::quiet_NaN();
+  double next_acceleration = std::numeric_limits<double>::quiet_NaN();
+  double velocity_bow = 0;  ///< see RoleSignals
+
+  /// Slopes of velocity and acceleration within a sample [s].
+  double gain(double sample_time) const;
+  double jerk(double sample_time) const;
+  GivenSignals given(double sample_time) const;
+};
+
+/// Columns of a record, or of a predictor; empty if the effect does not read them.
+struct RoleSignals {
+  std::span<const double> position, velocity, acceleration, input, force;
+  /// True: within a sample velocity and acceleration are interpolated to those of the next sample, which is
+  /// best for an analysis of the whole record. False: they are extrapolated from velocity and acceleration,
+  /// so that row k depends only on rows up to k.
+  bool looks_ahead = false;
+  /// By how much the mean velocity of a sample exceeds the middle between those at its ends; empty: straight
+  /// lines.
+  std::span<const double> velocity_bow;
+
+  size_t rows() const;
+  RoleSample at(size_t row) const;
+};
+
+}  // namespace loopwright

@@ -1,0 +1,94 @@
+#include "tools/effects/segment_run.h"
+#include <algorithm>
+#include <cmath>
+
+namespace loopwright {
+namespace {
+
+/// What is remembered fades with the way: at first a segment is led over so much of the stroke to its first
+/// row, and over so many times more where that does not suffice.
+constexpr double first_way = 0.002;
+constexpr double longer = 8;
+/// [of the rows of a segment] A longer lead costs more than it saves.
+constexpr double most_lead = 1;
+/// Rows of a segment below which the beginnings outweigh the rest.
+constexpr size_t least_rows = 64;
+
+}  // namespace
+
+SegmentRun::SegmentRun(std::shared_ptr<const EffectPlan> plan)
+    : plan_(std::move(plan)), lanes_(*plan_, widest_instruction_set(), 1), way_before_(first_way) {}
+
+/// Equal numbers of rows; where each begins follows from the way before its first row.
+std::vector<SegmentRun::Segment> SegmentRun::segments_of(const RoleSignals& signals, size_t rows) const {
+  const size_t lanes = lanes_.lanes(), each = (rows + lanes - 1) / lanes;
+  const size_t most = size_t(most_lead * double(each));
+  std::vector<Segment> segments(lanes);
+  for (size_t i = 0; i < lanes; ++i) {
+    const size_t first = std::min(rows, i * each), end = std::min(rows, first + each);
+    size_t start = first;
+    for (double way = 0; start > 0 && first - start < most && way < way_before_ * plan_->sizes.stroke;
+         --start)
+      way += std::abs(signals.position[start] - signals.position[start - 1]);
+    segments[i] = {start, first, end, {}, {}};
+  }
+  return segments;
+}
+
+/// A row of every segment; beyond its end a lane stays at the last one.
+void SegmentRun::step(const RoleSignals& signals, size_t rows, const std::vector<Segment>& segments,
+                      size_t step) {
+  const double period = plan_->sizes.sample_time;
+  const auto row = [&](const Segment& s) { return std::min(s.start + step, rows - 1); };
+  // The clock of the lanes stands at zero, so that each is at an instant of its own. Seconds are those of the
+  // whole record in turn, with their rounding.
+  const auto at = [&](double part) {
+    for (size_t i = 0; i < segments.size(); ++i) {
+      const double now = plan_->plan.clock.time(int64_t(row(segments[i])) * lanes_.sample_ticks());
+      lanes_.give_since(now - (now + part * period), i);
+    }
+  };
+  for (size_t i = 0; i < segments.size(); ++i) lanes_.give(signals.at(row(segments[i])).given(period), i);
+  at(plan_->acts_on_sensor ? 0 : gauss_point);
+  lanes_.read_first(0);
+  if (plan_->acts_on_sensor) return;
+  at(1 - gauss_point);
+  lanes_.read_second(0);
+}
+
+bool SegmentRun::run_once(const RoleSignals& signals, size_t rows, const std::vector<double>& fitted,
+                          std::vector<double>& mean, std::vector<double>& slope) {
+  std::vector<Segment> segments = segments_of(signals, rows);
+  size_t steps = 0;
+  for (const Segment& s : segments) steps = std::max(steps, s.end - s.start);
+  lanes_.start({fitted}, signals.at(0));
+  mean.resize(rows), slope.resize(rows);
+  for (size_t k = 0; k <= steps; ++k) {
+    for (size_t i = 0; i < segments.size(); ++i) {
+      Segment& s = segments[i];
+      if (s.start + k == s.first) lanes_.run().accepted_memory(int(i), s.remembers_first);
+      if (s.start + k == s.end) lanes_.run().accepted_memory(int(i), s.at_end);
+    }
+    if (k == steps) break;
+    step(signals, rows, segments, k);
+    for (size_t i = 0; i < segments.size(); ++i) {
+      const size_t row = segments[i].start + k;
+      if (row < segments[i].first || row >= segments[i].end) continue;
+      mean[row] = lanes_.value[i], slope[row] = lanes_.slope[i];
+    }
+  }
+  for (size_t i = 1; i < segments.size(); ++i)
+    if (segments[i].first < rows && segments[i].remembers_first != segments[i - 1].at_end) return false;
+  return true;
+}
+
+bool SegmentRun::run(const RoleSignals& signals, size_t rows, const std::vector<double>& fitted,
+                     std::vector<double>& mean, std::vector<double>& slope) {
+  if (lanes_.lanes() == 1 || signals.position.size() < rows || rows < least_rows * lanes_.lanes())
+    return false;
+  for (; way_before_ <= 1; way_before_ *= longer)
+    if (run_once(signals, rows, fitted, mean, slope)) return true;
+  return false;
+}
+
+}  // namespace loopwright
