@@ -5,6 +5,7 @@
 #include "engine/diagram/in_memory.h"
 #include "engine/json/reader.h"
 #include "engine/run/run.h"
+#include "tools/effects/held_effect.h"
 #include "tools/effects/linear_effect.h"
 #include "tools/effects/switched_effect.h"
 
@@ -258,6 +259,7 @@ std::shared_ptr<const EffectPlan> compile_effect(const Effect& effect, const Mac
                     });
     check_bindings(*result, own);
     if (!own.has_errors()) result->is_linear = is_linear(result);
+    if (!own.has_errors()) result->is_held = is_held(result);
     if (!own.has_errors() && (result->is_switched = is_switched(result))) {
       result->finer = with_steps(*result, bench, steps_per_decision, own);
       auto coarser = with_steps(*result, bench, 1, own);

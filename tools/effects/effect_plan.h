@@ -26,6 +26,8 @@ struct EffectPlan {
   bool remembers = true;  ///< otherwise a sample depends only on itself, not even on time
   /// Remembers nothing but accepted memory, of numbers: see SegmentRun.
   bool remembers_way = false;
+  /// Linear in one held signal and in samples of it that it remembers: see HeldEffect.
+  bool is_held = false;
   /// Has states, which and whose force are linear in the signals and in themselves, and nothing else that
   /// remembers: see EffectRun.
   bool is_linear = false;

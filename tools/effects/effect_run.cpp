@@ -30,6 +30,7 @@ EffectRun::EffectRun(std::shared_ptr<const EffectPlan> plan, int lanes) : plan_(
     linear_ = std::make_unique<EffectSample>(plan_);
     return;
   }
+  if (plan_->is_held) held_ = std::make_unique<HeldEffect>(plan_);
   if (plan_->is_switched) {
     fitted_.assign(size_t(std::max(1, lanes)), starts_);
     return;
@@ -182,6 +183,16 @@ void EffectRun::superpose(const RoleSignals& signals, size_t rows, size_t lanes,
 }
 
 template <class Take>
+void EffectRun::answer(const RoleSignals& signals, size_t rows, size_t lanes, Take&& take) {
+  const std::span<const double> signal = held_->signal(signals);
+  for (size_t lane = 0; lane < lanes; ++lane) {
+    const HeldResponse response = held_->response(fitted_[lane]);
+    for (size_t row = 0; row < rows; ++row)
+      take(lane, row, response.mean(signal, row), response.slope(signal, row));
+  }
+}
+
+template <class Take>
 void EffectRun::follow_modes(const RoleSignals& signals, size_t rows, size_t lanes, Take&& take) {
   const RoleSample first = signals.at(0);
   for (size_t lane = 0; lane < lanes; ++lane) {
@@ -211,6 +222,8 @@ void EffectRun::run_lanes(const RoleSignals& signals, size_t rows, size_t lanes,
   if (rows == 0) return;
   if (linear_) return superpose(signals, rows, std::min(lanes, fitted_.size()), take);
   if (!lanes_) return follow_modes(signals, rows, std::min(lanes, fitted_.size()), take);
+  if (held_ && rows > 2 * held_->remembered_rows())
+    return answer(signals, rows, std::min(lanes, fitted_.size()), take);
   if (segments_ && run_in_segments(signals, rows, std::min(lanes, fitted_.size()), take)) return;
   lanes_->start(fitted_, signals.at(0));
   if (plan_->remembers)

@@ -4,6 +4,7 @@
 #include <span>
 #include "tools/effects/effect_lanes.h"
 #include "tools/effects/effect_plan.h"
+#include "tools/effects/held_effect.h"
 #include "tools/effects/linear_effect.h"
 #include "tools/effects/role_signals.h"
 #include "tools/effects/segment_run.h"
@@ -65,12 +66,14 @@ class EffectRun {
   bool run_in_segments(const RoleSignals& signals, size_t rows, size_t lanes, Take&& take);
   template <class Take> void run_side_by_side(const RoleSignals& signals, size_t rows, Take&& take);
   template <class Take> void superpose(const RoleSignals& signals, size_t rows, size_t lanes, Take&& take);
+  template <class Take> void answer(const RoleSignals& signals, size_t rows, size_t lanes, Take&& take);
   template <class Take> void follow_modes(const RoleSignals& signals, size_t rows, size_t lanes, Take&& take);
 
   std::shared_ptr<const EffectPlan> plan_;
   std::vector<double> starts_;               // of each fitted parameter
   std::vector<std::vector<double>> fitted_;  // of each set
   std::unique_ptr<EffectSample> linear_;     // of a linear effect
+  std::unique_ptr<HeldEffect> held_;         // of an effect that remembers samples of one held signal
   std::unique_ptr<SegmentRun> segments_;     // of a few sets of what remembers only accepted memory
   std::unique_ptr<EffectLanes> lanes_;       // empty, as all that follows, where samples have maps
   std::vector<RoleSample> samples_;          // one per lane
