@@ -54,8 +54,10 @@ template <class Real> struct PreslidingFriction {
   Real fraction(const In& in, const Memory& memory) const {
     const Real way = in.position - memory.position;
     const Real direction = select(way < 0.0, Real(-1.0), Real(1.0));
-    const Real left = exponential(-absolute(way) * per_distance);
-    return memory.has_begun * (direction + (memory.fraction - direction) * left);
+    const Real change = memory.fraction - direction;
+    // While it slides on, nothing is left to change: that needs no exponential, and has the same bits.
+    const Real left = any(change != 0.0) ? exponential(-absolute(way) * per_distance) : 0.0 * way;
+    return memory.has_begun * (direction + change * left);
   }
   Real sliding_level(const Real& velocity) const {
     if (!any(rise != 0.0)) return level;

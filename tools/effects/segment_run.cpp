@@ -9,8 +9,8 @@ namespace {
 /// row, and over so many times more where that does not suffice.
 constexpr double first_way = 0.002;
 constexpr double longer = 8;
-/// [of the rows of a segment] A longer lead costs more than it saves.
-constexpr double most_lead = 1;
+/// On either side, within a quarter of a segment.
+constexpr size_t tried_firsts = 8;
 /// Rows of a segment below which the beginnings outweigh the rest.
 constexpr size_t least_rows = 64;
 
@@ -19,18 +19,30 @@ constexpr size_t least_rows = 64;
 SegmentRun::SegmentRun(std::shared_ptr<const EffectPlan> plan)
     : plan_(std::move(plan)), lanes_(*plan_, widest_instruction_set(), 1), way_before_(first_way) {}
 
-/// Equal numbers of rows; where each begins follows from the way before its first row.
+/// How many rows before a row the way is long enough that a segment can begin there; at most `most`.
+size_t SegmentRun::lead(const RoleSignals& signals, size_t row, size_t most) const {
+  const double long_enough = way_before_ * plan_->sizes.stroke;
+  size_t rows = 0;
+  for (double way = 0; rows < std::min(row, most) && way < long_enough; ++rows)
+    way += std::abs(signals.position[row - rows] - signals.position[row - rows - 1]);
+  return rows;
+}
+
+/// Nearly equal numbers of rows: the first of each is chosen for a short lead, and so not within a rest.
 std::vector<SegmentRun::Segment> SegmentRun::segments_of(const RoleSignals& signals, size_t rows) const {
   const size_t lanes = lanes_.lanes(), each = (rows + lanes - 1) / lanes;
-  const size_t most = size_t(most_lead * double(each));
   std::vector<Segment> segments(lanes);
   for (size_t i = 0; i < lanes; ++i) {
-    const size_t first = std::min(rows, i * each), end = std::min(rows, first + each);
-    size_t start = first;
-    for (double way = 0; start > 0 && first - start < most && way < way_before_ * plan_->sizes.stroke;
-         --start)
-      way += std::abs(signals.position[start] - signals.position[start - 1]);
-    segments[i] = {start, first, end, {}, {}};
+    size_t first = std::min(rows, i * each), before = lead(signals, std::min(first, rows - 1), each);
+    for (size_t k = 1; k <= tried_firsts && i > 0 && first < rows; ++k)
+      for (const int sign : {-1, 1}) {
+        const size_t other = i * each + size_t(sign * int(k * each / (4 * tried_firsts)));
+        if (other >= rows) continue;
+        if (const size_t lead_there = lead(signals, other, before); lead_there < before)
+          first = other, before = lead_there;
+      }
+    segments[i] = {first - before, first, rows, {}, {}};
+    if (i > 0) segments[i - 1].end = first;
   }
   return segments;
 }

@@ -23,6 +23,7 @@ class SegmentRun {
     size_t start, first, end;                     // rows: where it begins, and those that it keeps
     std::vector<double> remembers_first, at_end;  // by its lane there
   };
+  size_t lead(const RoleSignals& signals, size_t row, size_t most) const;
   std::vector<Segment> segments_of(const RoleSignals& signals, size_t rows) const;
   void step(const RoleSignals& signals, size_t rows, const std::vector<Segment>& segments, size_t step);
   bool run_once(const RoleSignals& signals, size_t rows, const std::vector<double>& fitted,
