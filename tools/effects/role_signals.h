@@ -1,6 +1,8 @@
 /// The signals of a record, by the roles under which an effect reads them.
 #pragma once
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <span>
@@ -25,9 +27,15 @@ struct RoleSample {
   double velocity_bow = 0;  ///< see RoleSignals
 
   /// Slopes of velocity and acceleration within a sample [s].
-  double gain(double sample_time) const;
-  double jerk(double sample_time) const;
-  GivenSignals given(double sample_time) const;
+  double gain(double sample_time) const {
+    return std::isnan(next_velocity) ? acceleration : (next_velocity - velocity) / sample_time;
+  }
+  double jerk(double sample_time) const {
+    return std::isnan(next_acceleration) ? 0.0 : (next_acceleration - acceleration) / sample_time;
+  }
+  GivenSignals given(double sample_time) const {
+    return {{position, velocity, gain(sample_time), acceleration, jerk(sample_time), input, force}};
+  }
 };
 
 /// Columns of a record, or of a predictor; empty if the effect does not read them.
@@ -41,8 +49,19 @@ struct RoleSignals {
   /// lines.
   std::span<const double> velocity_bow;
 
-  size_t rows() const;
-  RoleSample at(size_t row) const;
+  size_t rows() const {
+    return std::max({position.size(), velocity.size(), acceleration.size(), input.size(), force.size()});
+  }
+  RoleSample at(size_t row) const {
+    const auto value = [row](std::span<const double> column) {
+      return row < column.size() ? column[row] : 0.0;
+    };
+    RoleSample sample{value(position), value(velocity), value(acceleration), value(input), value(force)};
+    sample.velocity_bow = value(velocity_bow);
+    if (looks_ahead && row + 1 < velocity.size()) sample.next_velocity = velocity[row + 1];
+    if (looks_ahead && row + 1 < acceleration.size()) sample.next_acceleration = acceleration[row + 1];
+    return sample;
+  }
 };
 
 }  // namespace loopwright

@@ -17,7 +17,10 @@ constexpr size_t least_rows = 64;
 }  // namespace
 
 SegmentRun::SegmentRun(std::shared_ptr<const EffectPlan> plan)
-    : plan_(std::move(plan)), lanes_(*plan_, widest_instruction_set(), 1), way_before_(first_way) {}
+    : plan_(std::move(plan)),
+      lanes_(*plan_, widest_instruction_set(), 1),
+      way_before_(first_way),
+      now_(lanes_.lanes()) {}
 
 /// How many rows before a row the way is long enough that a segment can begin there; at most `most`.
 size_t SegmentRun::lead(const RoleSignals& signals, size_t row, size_t most) const {
@@ -51,16 +54,16 @@ std::vector<SegmentRun::Segment> SegmentRun::segments_of(const RoleSignals& sign
 void SegmentRun::step(const RoleSignals& signals, size_t rows, const std::vector<Segment>& segments,
                       size_t step) {
   const double period = plan_->sizes.sample_time;
-  const auto row = [&](const Segment& s) { return std::min(s.start + step, rows - 1); };
+  for (size_t i = 0; i < segments.size(); ++i) {
+    const size_t row = std::min(segments[i].start + step, rows - 1);
+    lanes_.give(signals.at(row).given(period), i);
+    now_[i] = plan_->plan.clock.time(int64_t(row) * lanes_.sample_ticks());
+  }
   // The clock of the lanes stands at zero, so that each is at an instant of its own. Seconds are those of the
   // whole record in turn, with their rounding.
   const auto at = [&](double part) {
-    for (size_t i = 0; i < segments.size(); ++i) {
-      const double now = plan_->plan.clock.time(int64_t(row(segments[i])) * lanes_.sample_ticks());
-      lanes_.give_since(now - (now + part * period), i);
-    }
+    for (size_t i = 0; i < segments.size(); ++i) lanes_.give_since(now_[i] - (now_[i] + part * period), i);
   };
-  for (size_t i = 0; i < segments.size(); ++i) lanes_.give(signals.at(row(segments[i])).given(period), i);
   at(plan_->acts_on_sensor ? 0 : gauss_point);
   lanes_.read_first(0);
   if (plan_->acts_on_sensor) return;

@@ -31,8 +31,8 @@ class SegmentRun {
 
   std::shared_ptr<const EffectPlan> plan_;
   EffectLanes lanes_;
-  double way_before_;  // over which a segment is led to its first row, the same for all [stroke]
-  std::vector<double> memory_;
+  double way_before_;        // over which a segment is led to its first row, the same for all [stroke]
+  std::vector<double> now_;  // of each lane [s]
 };
 
 }  // namespace loopwright
