@@ -26,18 +26,20 @@ EffectLanes::Wire EffectLanes::wire(const char* role) {
     for (int lane = 0; lane < run_->lanes(); ++lane)
       if (double* number = run_->parameter(fmt::format("given_{}.{}", role, name), lane))
         all.lanes.push_back(number);
-    for (size_t lane = 0; lane < all.lanes.size(); ++lane)
-      all.is_row = all.lanes[lane] == all.lanes[0] + lane && (lane == 0 || all.is_row);
+    for (double* lane : all.lanes) {
+      const bool goes_on = !all.rows.empty() && all.rows.back().data() + all.rows.back().size() == lane;
+      if (goes_on)
+        all.rows.back() = {all.rows.back().data(), all.rows.back().size() + 1};
+      else
+        all.rows.emplace_back(lane, 1);
+    }
     return all;
   };
   return {setting("value"), setting("slope"), setting("bend"), setting("since")};
 }
 
 void EffectLanes::Setting::set(double to) const {
-  if (is_row)
-    std::fill_n(lanes.front(), lanes.size(), to);
-  else
-    for (double* lane : lanes) *lane = to;
+  for (const std::span<double> row : rows) std::ranges::fill(row, to);
 }
 
 void EffectLanes::start(const std::vector<std::vector<double>>& fitted, const RoleSample& first) {

@@ -1,6 +1,7 @@
 /// An effect's blocks on the lanes of a run, and the signals that are given to them.
 #pragma once
 #include <memory>
+#include <span>
 #include <vector>
 #include "engine/lanes/lane_run.h"
 #include "tools/effects/effect_plan.h"
@@ -14,7 +15,7 @@ class EffectLanes {
  public:
   struct Setting {  // a parameter of an ExternalSignal, in every lane
     std::vector<double*> lanes;
-    bool is_row = false;  // lanes are adjacent
+    std::vector<std::span<double>> rows;  // the same, as far as they are adjacent
     void set(double to) const;
   };
   struct Wire {

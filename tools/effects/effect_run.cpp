@@ -20,6 +20,38 @@ size_t parts_of_a_sample(const RecordSizes& sizes) {
   return std::min(most, whole_count(std::ceil(way / (farthest * sizes.stroke))));
 }
 
+/// Passes on rows of all lanes lane by lane, some rows at a time: to write a number to as many columns as
+/// there are lanes, row by row, takes longer than to compute them.
+template <class Take> class InBlocks {
+ public:
+  InBlocks(size_t lanes, Take& take) : lanes_(lanes), take_(take), numbers_(2 * lanes * most) {}
+  ~InBlocks() { pass_on(); }
+  InBlocks(const InBlocks&) = delete;
+  void add(const double* means, const double* slopes) {
+    for (size_t lane = 0; lane < lanes_; ++lane) {
+      double* const to = &numbers_[2 * (lane * most + rows_)];
+      to[0] = means[lane], to[1] = slopes[lane];
+    }
+    if (++rows_ == most) pass_on();
+  }
+
+ private:
+  static constexpr size_t most = 16;  // rows
+  void pass_on() {
+    for (size_t lane = 0; lane < lanes_; ++lane)
+      for (size_t row = 0; row < rows_; ++row) {
+        const double* const from = &numbers_[2 * (lane * most + row)];
+        take_(lane, first_ + row, from[0], from[1]);
+      }
+    first_ += rows_, rows_ = 0;
+  }
+
+  size_t lanes_;
+  Take& take_;
+  std::vector<double> numbers_;
+  size_t first_ = 0, rows_ = 0;
+};
+
 }  // namespace
 
 EffectRun::EffectRun(std::shared_ptr<const EffectPlan> plan, int lanes) : plan_(std::move(plan)) {
@@ -137,9 +169,10 @@ void EffectRun::step(const RoleSample& s) {
 
 template <class Take>
 void EffectRun::run_in_turn(const RoleSignals& signals, size_t rows, size_t lanes, Take&& take) {
+  InBlocks blocks(lanes, take);
   for (size_t row = 0; row < rows; ++row) {
     step(signals.at(row));
-    for (size_t lane = 0; lane < lanes; ++lane) take(lane, row, lanes_->value[lane], lanes_->slope[lane]);
+    blocks.add(lanes_->value.data(), lanes_->slope.data());
   }
 }
 
@@ -175,10 +208,10 @@ void EffectRun::superpose(const RoleSignals& signals, size_t rows, size_t lanes,
     states.push_back(linear_->states()), maps.push_back(linear_->map());
   }
   SampleMaps side_by_side(maps, states);
+  InBlocks blocks(lanes, take);
   for (size_t row = 0; row < rows; ++row) {
     side_by_side.step(signals.at(row).given(plan_->sizes.sample_time));
-    for (size_t lane = 0; lane < lanes; ++lane)
-      take(lane, row, side_by_side.mean(lane), side_by_side.slope(lane));
+    blocks.add(side_by_side.means(), side_by_side.slopes());
   }
 }
 

@@ -29,8 +29,9 @@ class SampleMaps {
   SampleMaps(std::span<const SampleMap> maps, std::span<const std::vector<double>> states);
   /// The next sample, with the same numbers as SampleMap::apply.
   void step(const GivenSignals& given);
-  double mean(size_t set) const { return result_[states_ * sets_ + set]; }
-  double slope(size_t set) const { return result_[(states_ + 1) * sets_ + set]; }
+  /// Of each set.
+  const double* means() const { return &result_[states_ * sets_]; }
+  const double* slopes() const { return &result_[(states_ + 1) * sets_]; }
 
  private:
   size_t states_, sets_;
