@@ -93,10 +93,10 @@ TEST(EffectRun, SetsSideBySideGiveTheBitsOfEachAlone) {
   const Sampled s;
   const RoleSignals signals = s.signals(false);
   const size_t rows = signals.rows();
-  for (const char* name : {"presliding_hysteresis", "flexible_mode"}) {
+  for (const char* name : {"presliding_hysteresis", "stribeck_friction", "flexible_mode"}) {
     const auto plan = compiled(effect_named(name));
-    EffectRun together(plan, 3), alone(plan);
-    const int lanes = std::min(together.lanes(), 3);
+    EffectRun together(plan, 8), alone(plan);
+    const int lanes = std::min(together.lanes(), 8);
     const double start = alone.get(1);
     for (int lane = 0; lane < lanes; ++lane) together.set(1, start * (1 + 0.1 * lane), lane);
     std::vector<double> all(size_t(lanes) * rows), one(rows);
