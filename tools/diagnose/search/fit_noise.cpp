@@ -37,7 +37,7 @@ double noise_misfit(const Trials& trials, size_t record, const LinearAxis& axis,
   const size_t ports = trials.ports();
   with_gains(axis, prediction, from, to, error);
   whiten(error, to);
-  trials.work->add(error.size(), 3 * Work::of_a_response);
+  trials.work->add(error.size(), 3 * Work::of_a_response + (to.rows ? Work::of_gains : 0));
   size_t rows = 0;
   double squares = 0, log_determinants = 0;
   for (size_t k = 0; k < std::min(trial.held_out_from, error.size() / ports); ++k) {

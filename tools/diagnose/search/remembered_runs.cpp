@@ -11,6 +11,11 @@ template <class Entries> auto& used(Entries& entries, typename Entries::iterator
   return entries.back();
 }
 
+/// [operations] For a row of the effect alone. A load in a gap decides at every row where it is.
+double work_of(const Candidate& candidate) {
+  return candidate.flies ? Work::of_a_flight : Work::of_an_effect;
+}
+
 }  // namespace
 
 std::vector<uint64_t> RememberedRuns::identities(const Motion& motion) {
@@ -49,8 +54,10 @@ Results RememberedRuns::run(Trials& trials, const std::vector<Member>& members, 
   if (question.paths.empty() || may_change(question.paths)) return anew();
   const auto known = std::ranges::find(runs_, question, &Run::question);
   if (known != runs_.end()) return used(runs_, known).results;
+  double of_members = 0;
+  for (const Member& member : members) of_members += work_of(*member.candidate);
   for (const Trial& trial : trials.list)
-    trials.work->add(trial.rows(), double(1 + members.size()) * Work::of_a_sample +
+    trials.work->add(trial.rows(), Work::of_a_sample + of_members +
                                        double(trial.model->steps_a_sample() - 1) * Work::of_a_step);
   runs_.push_back({std::move(question), anew()});
   for (const Fitted& fitted : *runs_.back().results)
@@ -67,8 +74,10 @@ std::shared_ptr<const std::vector<Sensitivity>> RememberedRuns::sensitivities(
   if (known != sensitive_.end()) return used(sensitive_, known).sensitivities;
   auto list = std::make_shared<std::vector<Sensitivity>>();
   for (size_t t = 0; t < trials.list.size(); ++t) {
-    trials.work->add(trials.list[t].rows(),
-                     double(free.size()) * Work::of_a_response + double(members.size()) * Work::of_a_sample);
+    double of_responses = 0;
+    for (const FreeParameter& p : free)
+      of_responses += Work::of_a_response + work_of(*members[p.member].candidate);
+    trials.work->add(trials.list[t].rows(), of_responses);
     const auto flies = [&](const FreeParameter& p) {
       return members[p.member].candidate == (*results)[t].flying;
     };
