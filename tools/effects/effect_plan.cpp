@@ -228,6 +228,16 @@ std::shared_ptr<EffectPlan> with_steps(const EffectPlan& effect, Bench& bench, i
 
 }  // namespace
 
+std::vector<double> tried_values(const EffectPlan& plan, double FitRange::*at) {
+  std::vector<double> fitted;
+  for (const EffectParameter& p : plan.effect.parameters) {
+    if (!p.is_fitted) continue;
+    const FitRange range = range_of(p, plan.sizes);
+    fitted.push_back(p.is_linear ? range.start : range.*at);
+  }
+  return fitted;
+}
+
 std::shared_ptr<const EffectPlan> compile_effect(const Effect& effect, const MachineUnits& units,
                                                  const RecordSizes& sizes, Problems& problems) {
   Problems own;

@@ -39,6 +39,10 @@ struct EffectPlan {
   std::shared_ptr<const EffectPlan> coarser;
 };
 
+/// Fitted parameters by which the kind of an effect is tried: linear ones at their typical values, the others
+/// at these values of their ranges.
+std::vector<double> tried_values(const EffectPlan& plan, double FitRange::*at);
+
 /// Null after a problem: blocks that do not exist, units incompatible with the machine's.
 std::shared_ptr<const EffectPlan> compile_effect(const Effect& effect, const MachineUnits& units,
                                                  const RecordSizes& sizes, Problems& problems);

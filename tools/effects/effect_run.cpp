@@ -259,6 +259,7 @@ void EffectRun::run_lanes(const RoleSignals& signals, size_t rows, size_t lanes,
     return answer(signals, rows, std::min(lanes, fitted_.size()), take);
   if (segments_ && run_in_segments(signals, rows, std::min(lanes, fitted_.size()), take)) return;
   lanes_->start(fitted_, signals.at(0));
+  std::ranges::fill(integral_, 0.0);
   if (plan_->remembers)
     run_in_turn(signals, rows, std::min(lanes, lanes_->lanes()), take);
   else

@@ -1,5 +1,6 @@
 #include "tools/effects/held_effect.h"
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -113,16 +114,8 @@ bool HeldEffect::superposes(const std::vector<double>& fitted) {
 bool is_held(const std::shared_ptr<const EffectPlan>& plan) {
   if (plan->acts_on_sensor || !the_only_signal(plan->plan) || !takes_a_sample_a_row(*plan)) return false;
   HeldEffect effect(plan);
-  for (double FitRange::*at : {&FitRange::start, &FitRange::low, &FitRange::high}) {
-    std::vector<double> fitted;
-    for (const EffectParameter& p : plan->effect.parameters)
-      if (p.is_fitted) {
-        const FitRange range = range_of(p, plan->sizes);
-        fitted.push_back(p.is_linear ? range.start : range.*at);
-      }
-    if (!effect.superposes(fitted)) return false;
-  }
-  return true;
+  return std::ranges::all_of(std::array{&FitRange::start, &FitRange::low, &FitRange::high},
+                             [&](auto at) { return effect.superposes(tried_values(*plan, at)); });
 }
 
 }  // namespace loopwright

@@ -257,13 +257,7 @@ bool is_linear(const std::shared_ptr<const EffectPlan>& plan) {
   EffectSample sample(plan);
   std::mt19937_64 random(1);
   for (double FitRange::*at : {&FitRange::start, &FitRange::low, &FitRange::high}) {
-    std::vector<double> fitted;
-    for (const EffectParameter& p : plan->effect.parameters)
-      if (p.is_fitted) {
-        const FitRange range = range_of(p, plan->sizes);
-        fitted.push_back(p.is_linear ? range.start : range.*at);
-      }
-    sample.start(fitted, 0, 0);
+    sample.start(tried_values(*plan, at), 0, 0);
     if (!superposes(sample, random)) return false;
   }
   return true;

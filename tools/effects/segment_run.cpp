@@ -7,7 +7,7 @@ namespace {
 
 /// What is remembered fades with the way: at first a segment is led over so much of the stroke to its first
 /// row, and over so many times more where that does not suffice.
-constexpr double first_way = 0.002;
+constexpr double first_way = 0.002;  // [stroke]
 constexpr double longer = 8;
 /// On either side, within a quarter of a segment.
 constexpr size_t tried_firsts = 8;
