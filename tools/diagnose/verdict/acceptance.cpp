@@ -67,7 +67,7 @@ class Judge {
                        "neither does the diagram simulate better with it, nor do the forces balance better"};
     if (state.conclusion.counts_portmanteau > criteria::most_portmanteau_of_counted && !state.runs.empty())
       for (size_t m = 0; m < state.conclusion.estimate.members.size(); ++m)
-        if (!helps(state, m) && !is_late(state, m))
+        if (!helps(state, m) && !is_late(state, m) && may_be_of_counts(state, m))
           return Refusal{
               m,
               "the counts of the sensor beat with the samples, which resembles it, and the diagram "
@@ -118,6 +118,10 @@ class Judge {
     const auto sensor = wandering_sensor(trials_, found);
     if (!sensor || sensor->gain <= criteria::least_gain_of_offset) return {};
     return Refusal{size_t(load - found.members.begin()), described(trials_, *sensor), true};
+  }
+  bool may_be_of_counts(const Acceptance& state, size_t member) const {
+    const Weight& weight = state.conclusion.weights[member];
+    return weight.counts == 0 || weight.counts >= criteria::least_feigned_by_counts * weight.wald;
   }
   bool is_late(const Acceptance& state, size_t member) const {
     return is_late_in_slow_balance(trials_, state.conclusion.estimate.members, member);
