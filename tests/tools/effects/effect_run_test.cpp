@@ -109,20 +109,6 @@ TEST(EffectRun, SetsSideBySideGiveTheBitsOfEachAlone) {
   }
 }
 
-TEST(EffectRun, BeginsAnewEachTime) {
-  const Sampled s;
-  for (const Effect& effect : whole_catalogue())
-    for (const int lanes : {1, 8}) {
-      const auto plan = compiled(effect);
-      EffectRun twice(plan, lanes), once(plan, lanes);
-      std::vector<EffectRun::Output> before(1), again(1), first(1);
-      twice.run(s.signals(), s.position.size(), before), twice.run(s.signals(), s.position.size(), again);
-      once.run(s.signals(), s.position.size(), first);
-      EXPECT_EQ(again[0].mean, first[0].mean) << effect.name << " " << effect.form << " " << lanes;
-      EXPECT_EQ(again[0].slope, first[0].slope) << effect.name << " " << effect.form << " " << lanes;
-    }
-}
-
 TEST(EffectRun, IsProportionalToItsLinearParameters) {
   const Sampled s;
   for (const Effect& effect : whole_catalogue()) {
