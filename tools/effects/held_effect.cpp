@@ -15,14 +15,11 @@ constexpr double tolerance = 1e-9;
 /// Numbers that are remembered; more would cost more than they save.
 constexpr int most_numbers = 10000;
 
-const Plan::Block* the_only_signal(const Plan& plan) {
-  const Plan::Block* found = nullptr;
-  for (const Plan::Block& block : plan.blocks) {
-    if (block.type->info.type != "ExternalSignal") continue;
-    if (found) return nullptr;
-    found = &block;
-  }
-  return found && (found->path == "given_input" || found->path == "given_force") ? found : nullptr;
+bool reads_one_held_signal(const Plan& plan) {
+  std::vector<std::string> signals;
+  for (const Plan::Block& block : plan.blocks)
+    if (block.type->info.type == "ExternalSignal") signals.push_back(block.path);
+  return signals.size() == 1 && (signals[0] == "given_input" || signals[0] == "given_force");
 }
 
 /// What is remembered is samples of the signal, of which one is taken at each row, and nothing is decided.
@@ -112,7 +109,8 @@ bool HeldEffect::superposes(const std::vector<double>& fitted) {
 }
 
 bool is_held(const std::shared_ptr<const EffectPlan>& plan) {
-  if (plan->acts_on_sensor || !the_only_signal(plan->plan) || !takes_a_sample_a_row(*plan)) return false;
+  if (plan->acts_on_sensor || !reads_one_held_signal(plan->plan) || !takes_a_sample_a_row(*plan))
+    return false;
   HeldEffect effect(plan);
   return std::ranges::all_of(std::array{&FitRange::start, &FitRange::low, &FitRange::high},
                              [&](auto at) { return effect.superposes(tried_values(*plan, at)); });

@@ -48,14 +48,16 @@ std::vector<double> starts_of(const EffectPlan& plan) {
 }  // namespace
 
 TEST(SegmentRun, DryFrictionHasTheBitsOfTheWholeRecordInTurn) {
-  if (widest_instruction_set() == InstructionSet::scalar) GTEST_SKIP() << "no lanes on this machine";
+  const bool has_lanes = widest_instruction_set() != InstructionSet::scalar;
   const Strokes strokes;
   for (const char* name : {"coulomb_friction", "stribeck_friction"}) {
     const auto plan = compiled(name);
     ASSERT_TRUE(plan->remembers_way) << name;
     SegmentRun segments(plan);
     std::vector<double> mean, slope;
-    ASSERT_TRUE(segments.run(strokes.signals(), strokes.rows(), starts_of(*plan), mean, slope)) << name;
+    ASSERT_EQ(segments.run(strokes.signals(), strokes.rows(), starts_of(*plan), mean, slope), has_lanes)
+        << name;
+    if (!has_lanes) continue;  // one lane has no segments: the record is left to a run in turn
     auto not_in_segments = std::make_shared<EffectPlan>(*plan);
     not_in_segments->remembers_way = false;
     std::vector<double> in_turn(strokes.rows());
