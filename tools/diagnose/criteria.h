@@ -135,7 +135,8 @@ constexpr double most_portmanteau_of_search = 300;
 /// part is taken off: beside noise of the force clean records stay below 130. Without such noise they reach
 /// 171, and small errors of the law of a large effect give 206.
 constexpr double most_portmanteau_of_counted = 150;
-/// [of its χ²] A member that owes less than that to counts of the sensor is not feigned by them.
+/// [of its χ²] A member that owes less than that to counts of the sensor is not feigned by them: a true load
+/// beside counts that beat owes 0.2 %.
 constexpr double least_feigned_by_counts = 0.01;
 /// [rows] Above it a fifth of the squared errors, beside noise, repeats as a vibration does, and is none.
 constexpr double most_portmanteau_per_row = 1;

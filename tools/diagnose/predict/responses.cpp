@@ -74,6 +74,7 @@ template <int States, int Ports, bool Changes> class ErrorFilter {
     }
     if constexpr (Changes)
       for (int i = first_of_load_; i < n(); ++i) next_[i] = next_[i] + load[i - first_of_load_];
+    // By halves, as they were stored: a wider load of both would wait for the stores.
     for (int i = 0; i < n(); ++i) x_[i].low = next_[i].low, x_[i].high = next_[i].high;
     d_ = memory_ * d_;
   }
