@@ -194,12 +194,17 @@ Estimate fit_members(Trials& trials, std::vector<Member> members, const Noise& n
   return best;
 }
 
-Estimate with_own_noise(Trials& trials, Estimate estimate, int iterations) {
+Estimate with_own_noise(Trials& trials, Estimate estimate, int iterations, double worst) {
   constexpr int rounds = 2;
   for (int round = 0; round < rounds && estimate.is_valid; ++round) {
+    const double before = estimate.profile;
     const Noise noise = fit_noise_alone(trials, *estimate.fitted, estimate.noise, FreeNoise::all);
-    estimate = fit_members(trials, estimate.members, noise, estimate.motion, iterations);
+    estimate = evaluated(trials, std::move(estimate.members), noise, estimate.motion);
+    if (estimate.profile > std::max(before, worst)) break;  // what is left is no noise: see fit_noise_alone()
+    estimate = fit_members(trials, std::move(estimate.members), noise, estimate.motion, iterations, worst);
     estimate = with_motion_of_its_loads(trials, std::move(estimate), iterations);
+    const double gained = std::max(before - estimate.profile, 0.0);
+    if (estimate.profile - gained > worst) break;
   }
   return estimate;
 }

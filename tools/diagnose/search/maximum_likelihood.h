@@ -24,8 +24,10 @@ struct Estimate {
 Estimate fit_members(Trials& trials, std::vector<Member> members, const Noise& noise, const Motion& motion,
                      int iterations, double worst = std::numeric_limits<double>::infinity());
 
-/// Parameters and noise in turn: the likelihood of both together.
-Estimate with_own_noise(Trials& trials, Estimate estimate, int iterations);
+/// Parameters and noise in turn: the likelihood of both together. It ends early where the profile would stay
+/// above `worst` though the next turn gained as much as the present one.
+Estimate with_own_noise(Trials& trials, Estimate estimate, int iterations,
+                        double worst = std::numeric_limits<double>::infinity());
 
 /// On a rotary axis what belongs to motor, bearing or encoder repeats a whole number of times a turn, and a
 /// pitch that is wrong by a thousandth is wrong by a period after a few turns. Every pitch that the records

@@ -5,9 +5,9 @@
 
 namespace loopwright::diagnosis {
 
-void maximise(Trials& trials, Estimate& estimate) {
+void maximise(Trials& trials, Estimate& estimate, double worst) {
   constexpr int iterations = 8;
-  estimate = with_own_noise(trials, std::move(estimate), iterations);
+  estimate = with_own_noise(trials, std::move(estimate), iterations, worst);
 }
 
 Estimate Rivals::fitted(const Proposal& proposal) const {
@@ -15,9 +15,15 @@ Estimate Rivals::fitted(const Proposal& proposal) const {
   Estimate other;
   if (is_refused(proposal)) return other;
   other.members = applied(proposal, estimate_.members);
-  const double price = criterion_of(other);
-  return fit_members(trials_, std::move(other.members), estimate_.noise, estimate_.motion, iterations,
-                     criterion_of(estimate_) + criteria::most_promised_loss * reach_ - price);
+  const double worst = worst_profile(other.members, criteria::most_promised_loss);
+  return fit_members(trials_, std::move(other.members), estimate_.noise, estimate_.motion, iterations, worst);
+}
+
+double Rivals::worst_profile(const std::vector<Member>& members, double reaches) const {
+  Estimate unfitted;
+  unfitted.members = members;
+  const double price = criterion_of(unfitted);
+  return criterion_of(estimate_) + reaches * reach_ - price;
 }
 
 std::optional<double> Rivals::loss_of(const Proposal& proposal, const Estimate& other,
@@ -37,7 +43,7 @@ std::optional<double> Rivals::loss_of(const Proposal& proposal) {
   Estimate other = fitted(proposal);
   if (!other.is_valid) return {};
   if (const double loss = criterion_of(other) - criterion_of(estimate_); loss > reach_ && loss < 4 * reach_)
-    maximise(trials_, other);
+    maximise(trials_, other, worst_profile(other.members, 1));
   const std::optional<double> loss = loss_of(proposal, other);
   if (!loss || is_refuted(proposal, other)) return {};
   const double disliked = *loss - preference(trials_, other.members, estimate_.members);

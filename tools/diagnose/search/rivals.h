@@ -7,8 +7,8 @@
 
 namespace loopwright::diagnosis {
 
-/// Fits parameters and noise together.
-void maximise(Trials& trials, Estimate& estimate);
+/// Fits parameters and noise together; `worst` is that of with_own_noise().
+void maximise(Trials& trials, Estimate& estimate, double worst = std::numeric_limits<double>::infinity());
 
 /// The set that was found, and those that explain the records as well.
 class Rivals {
@@ -48,6 +48,8 @@ class Rivals {
 
  private:
   bool is_refused(const Proposal& proposal) const;
+  /// Profile above which a set of these members loses more than so many reaches.
+  double worst_profile(const std::vector<Member>& members, double reaches) const;
   double criterion_of(const Estimate& estimate) const { return criterion(trials_, estimate, catalogue_); }
 
   Trials& trials_;
