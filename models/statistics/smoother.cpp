@@ -54,7 +54,7 @@ Hats Hats::between_quantiles(std::span<const double> values, size_t knots) {
 }
 
 Hats::Place Hats::at(double value) const {
-  if (knots_.size() < 2 || value <= knots_.front()) return {0, 0};
+  if (knots_.size() < 2 || !(value > knots_.front())) return {0, 0};  // nor of what is no number
   if (value >= knots_.back()) return {knots_.size() - 2, 1};
   const size_t i = size_t(std::ranges::upper_bound(knots_, value) - knots_.begin()) - 1;
   return {i, (value - knots_[i]) / (knots_[i + 1] - knots_[i])};

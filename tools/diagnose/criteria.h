@@ -271,9 +271,9 @@ constexpr double most_work = 48e9;
 /// [operations] The same without roles: one to two minutes. Of a record with three effects in a stiff
 /// circuit, the first search needs 37e9.
 constexpr double most_work_at_sites = 70e9;
-/// [most_work] Used up, the search accepts no further effect; and no further rival is compared. What was
-/// found is fitted, weighed and simulated in any case.
-constexpr double work_of_search = 0.6, work_with_rivals = 0.8;
+/// [most_work] Used up, the search accepts no further effect; no further rival is compared; from no answer it
+/// goes on, which adds the last at most. What was found is fitted, weighed and simulated in any case.
+constexpr double work_of_search = 0.6, work_with_rivals = 0.8, work_to_go_on = 1.2, work_going_on = 0.3;
 /// [most_work_at_sites] Used up, there is no second search, with all parameters free from its beginning.
 constexpr double work_of_first_search = 0.4;
 

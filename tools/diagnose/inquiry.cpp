@@ -3,12 +3,21 @@
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/doubt.h"
 #include "tools/diagnose/search/friction_at_reversals.h"
+#include "tools/diagnose/search/names.h"
 #include "tools/diagnose/search/replacement.h"
 #include "tools/diagnose/search/rivals.h"
 #include "tools/diagnose/search/unknown.h"
 #include "tools/diagnose/search/whiteness.h"
 
 namespace loopwright::diagnosis {
+namespace {
+
+/// Of the same candidates, in any order.
+bool are_alike(const std::vector<Member>& one, const std::vector<Member>& other) {
+  return std::ranges::is_permutation(one, other, {}, &Member::candidate, &Member::candidate);
+}
+
+}  // namespace
 
 Inquiry::Inquiry(Trials& trials, const Motion& motion, const Catalogue& catalogue, const RecordSizes& sizes,
                  const std::function<void(const char*, double)>& progress)
@@ -26,10 +35,10 @@ Conclusion Inquiry::with_names() {
                                portmanteau(trials_, *e.fitted) <= criteria::most_portmanteau_of_search;
   if (seems_explained && holds_out_something_else(e) && holds_out_something_else(with_fitted_noise(e)))
     return with_all_rows(found.trail, e);
-  const Conclusion conclusion = concluded(found.trail, e);
+  Conclusion conclusion = concluded(found.trail, e);
   if (conclusion.is_white() && holds_out_something_else(conclusion.estimate))
     return with_all_rows(conclusion.trail, conclusion.estimate);
-  return conclusion;
+  return gone_on(std::move(conclusion), e.members);
 }
 
 Conclusion Inquiry::without_names() {
@@ -72,6 +81,49 @@ Conclusion Inquiry::concluded(std::vector<std::string> trail, const Estimate& fo
   conclusion.trail = std::move(trail);
   look_at_all_rows(conclusion.estimate);
   return conclusion;
+}
+
+Conclusion Inquiry::gone_on(Conclusion conclusion, const std::vector<Member>& searched) {
+  const std::vector<Member>& members = conclusion.estimate.members;
+  std::vector<Member> named = members;
+  std::erase_if(named, [](const Member& m) { return m.candidate->is_unknown; });
+  const bool has_no_name = named.size() < members.size();
+  const bool leaves_something = has_no_name || !conclusion.is_white();
+  const bool is_new = has_no_name || !are_alike(members, searched);
+  if (named.empty() || !leaves_something || !is_new || trials_.work->is_spent(criteria::work_to_go_on))
+    return conclusion;
+  std::vector<std::vector<char>> with_reversals;
+  for (const Trial& trial : trials_.list) with_reversals.push_back(trial.with_reversals);
+  forget_reversals(trials_);
+  SearchResult again =
+      search_on(trials_, catalogue_.candidates, shapes_along_fitted_rows(), unknown_, fitted_motion_, named);
+  if (again.estimate.is_valid && !are_alike(again.estimate.members, members)) {
+    std::vector<std::string> trail = conclusion.trail;
+    std::ranges::move(again.trail, std::back_inserter(trail));
+    Conclusion next = concluded(std::move(trail), again.estimate);
+    if (is_better(next, conclusion)) return next;
+    conclusion.trail = std::move(next.trail);
+  }
+  for (size_t t = 0; t < with_reversals.size(); ++t)
+    trials_.list[t].with_reversals = std::move(with_reversals[t]);
+  leave_out_doubtful(trials_, conclusion.estimate);
+  look_at_all_rows(conclusion.estimate);
+  return conclusion;
+}
+
+bool Inquiry::is_better(const Conclusion& next, const Conclusion& before) {
+  // On the same rows: other members may make others doubtful.
+  Estimate on_its_rows = next.estimate;
+  leave_out_doubtful(trials_, on_its_rows);
+  const auto criterion_of = [&](const Estimate& e) {
+    return criterion(trials_, fit_members(trials_, e.members, e.noise, e.motion, 0),
+                     catalogue_.candidates.size());
+  };
+  const double gain = criterion_of(before.estimate) - criterion_of(on_its_rows);
+  look_at_all_rows(next.estimate);
+  const bool gives_names =
+      has_function_without_name(before.estimate.members) && !has_function_without_name(next.estimate.members);
+  return gain > (gives_names ? -worth_losing_names(trials_) : criteria::clearly_better);
 }
 
 Conclusion Inquiry::with_all_rows(std::vector<std::string> trail, const Estimate& found) {

@@ -37,6 +37,7 @@ class Inserter {
     find_mass();
     choose_names();
     for (const Attachment& attachment : effect_.attachments) attach(attachment);
+    if (!failed_) add_force_terms();
     if (failed_) return {};
     new_parameters_.write();
     result_.text = nest_.text();
@@ -183,6 +184,12 @@ class Inserter {
 
   void attach_to_force(const Attachment& attachment) {
     add_blocks(sum_level_, *sum_);
+    force_terms_.push_back(new_port(attachment.from));
+  }
+
+  /// All at once: the sum has one list of terms, and one of signs.
+  void add_force_terms() {
+    if (force_terms_.empty()) return;
     TextEdits& edits = sum_level_.document->edits;
     const std::string& text = sum_level_.document->text();
     const Value::Member* in = sum_->value.find("in");
@@ -191,13 +198,15 @@ class Inserter {
       error("the sum of forces has no list of terms").expected = "\"in\": {\"terms\": [\"motor.force\", …]}";
       return;
     }
-    const size_t last = terms->value.items.back().place.offset;
-    edits.insert(end_of_value(text, last), fmt::format(", \"{}\"", new_port(attachment.from)));
+    std::string more;
+    for (const std::string& term : force_terms_) more += fmt::format(", \"{}\"", term);
+    edits.insert(end_of_value(text, terms->value.items.back().place.offset), more);
+    const std::string minuses(force_terms_.size(), '-');
     if (const auto* signs = sum_->value.find("signs"))
-      edits.insert(end_of_value(text, signs->value.place.offset) - 1, "-");
+      edits.insert(end_of_value(text, signs->value.place.offset) - 1, minuses);
     else
-      edits.insert(sum_->value.find("in")->place.offset,
-                   fmt::format("\"signs\": \"{}-\", ", std::string(terms->value.items.size(), '+')));
+      edits.insert(in->place.offset, fmt::format("\"signs\": \"{}{}\", ",
+                                                 std::string(terms->value.items.size(), '+'), minuses));
   }
 
   void attach_to_input(const Attachment& attachment) {
@@ -316,6 +325,7 @@ class Inserter {
   Place place_;
   Nest nest_;
   Insertion result_;
+  std::vector<std::string> force_terms_;  // ports that the effect adds to the sum of forces
   bool failed_ = false, were_added_ = false, uses_switch_ = false;
   Level sum_level_;
   const Value::Member *sum_ = nullptr, *mass_ = nullptr;

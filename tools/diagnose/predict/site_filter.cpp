@@ -111,6 +111,7 @@ void SiteFilter::allocate(size_t rows, bool with_columns, SitePass& pass) {
   for (auto* list : {&pass.error, &pass.variance, &pass.innovation}) list->resize(rows * outputs);
   for (auto* list : {&pass.C, &pass.gain}) list->resize(rows * outputs * n);
   for (auto* list : {&pass.correction, &pass.filtered}) list->resize(rows * n);
+  pass.share.resize(rows);
   pass.modes.resize(rows * model_.mode_bytes() + 1), modes_.resize(model_.mode_bytes() + 1);
   pass.A.resize(rows * n * n), pass.G.resize(rows * sites * n);
   P_.resize(Eigen::Index(n), Eigen::Index(n)), product_.resize(Eigen::Index(n), Eigen::Index(n));
@@ -197,10 +198,10 @@ bool SiteFilter::advance_from_correction(size_t row, const SitePass& pass, doubl
   return advance(row, pass.noise, middle);
 }
 
-void SiteFilter::shorten_correction(size_t row, double share, SitePass& pass) const {
+void SiteFilter::keep_correction(size_t row, double share, SitePass& pass) const {
   const auto n = Eigen::Index(pass.states);
-  Map(&pass.gain[row * pass.outputs * pass.states], Eigen::Index(pass.outputs) * n) *= share;
-  Map(&pass.correction[row * pass.states], n) *= share;
+  pass.share[row] = share;
+  Map(&pass.correction[row * pass.states], n) = share * delta_;
   Map(&pass.filtered[row * pass.states], n) = x_;
 }
 
@@ -257,8 +258,6 @@ bool SiteFilter::correct(size_t row, const SiteNoise& noise, SitePass& pass) {
     ++pass.readings;
   }
   x_ += delta_;
-  Map(&pass.correction[row * pass.states], n) = delta_;
-  Map(&pass.filtered[row * pass.states], n) = x_;
   return true;
 }
 
@@ -295,7 +294,7 @@ bool SiteFilter::run(size_t rows, const SiteNoise& noise, bool with_columns, Sit
     end_.states = x_;
     double share = 1;
     if (!advance_from_correction(row, pass, with_columns ? middle_.data() : nullptr, share)) return false;
-    if (share < 1) shorten_correction(row, share, pass);
+    keep_correction(row, share, pass);
     if (!linearize(row, noise, pass)) return false;
     predict_covariance(pass, row, noise);
     x_ = next_;
@@ -321,6 +320,7 @@ bool SiteFilter::run_frozen(const SitePass& gains, std::span<double> error) {
           record_.outputs[j].value[row] - y_[j] - ConstMap(&gains.C[at * n], Eigen::Index(n)).dot(delta_);
       delta_ += error[at] * ConstMap(&gains.gain[at * n], Eigen::Index(n));
     }
+    if (gains.share[row] < 1) delta_ *= gains.share[row];
     x_ += delta_;
     double share = 1;
     if (!advance_from_correction(row, gains, nullptr, share)) return false;

@@ -52,7 +52,8 @@ struct SitePass {
   std::vector<double> C, gain;              ///< rows × outputs × states
   std::vector<double> A;                    ///< rows × states × states, column by column
   std::vector<double> G, ramp;              ///< rows × sites × states
-  std::vector<double> correction;           ///< rows × states: δ
+  std::vector<double> share;                ///< rows: of δ that is taken; less than 1 where no state can be
+  std::vector<double> correction;           ///< rows × states: what is taken of δ
   std::vector<double> filtered;             ///< rows × states
   std::vector<char> modes;                  ///< rows × bytes: of the blocks, before each flow
   std::array<std::vector<double>, 3> path;  ///< rows × numbers: at the start, middle and end of each sample
@@ -135,7 +136,7 @@ class SiteFilter {
   /// The same after the correction delta_, or the share of it after which the model is finite: the noise of a
   /// reading may lead where no state can be.
   bool advance_from_correction(size_t row, const SitePass& pass, double* middle, double& share);
-  void shorten_correction(size_t row, double share, SitePass& pass) const;
+  void keep_correction(size_t row, double share, SitePass& pass) const;
   bool correct(size_t row, const SiteNoise& noise, SitePass& pass);
   bool slopes_of_outputs(size_t row, SitePass& pass);
   /// A, G, ramps and the path at the row, from x_ and next_.

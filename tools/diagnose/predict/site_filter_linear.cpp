@@ -69,6 +69,7 @@ double SiteFilter::objective_with(const SitePass& pass, const SiteNoise& noise) 
         const auto i = Eigen::Index(model_states_ + j);
         A(i, i) = noise.slow[j].kept(record_.step(row));
       }
+      if (pass.share[row] < 1) delta *= pass.share[row];
       change = difference + delta - MapOf(&pass.correction[row * pass.states], n);
       difference.noalias() = A * change;
       for (size_t j = 0; j < noise.slow.size(); ++j) {  // they decay differently than along the pass
@@ -104,9 +105,10 @@ void SiteFilter::respond(const SitePass& pass, int site, std::span<const double>
   with_size(pass.states, [&]<int N>() {
     using Vector = Eigen::Matrix<double, N, 1>;
     using MapOf = Eigen::Map<const Vector>;
-    Vector difference(n), next(n);
+    Vector difference(n), next(n), before(n);
     for (size_t row = 0; row < pass.rows; ++row) {
       if (record_.begins_at(row)) difference.setZero();
+      before = difference;
       for (size_t j = 0; j < pass.outputs; ++j) {
         const size_t at = row * pass.outputs + j;
         if (std::isnan(pass.error[at])) {
@@ -118,6 +120,8 @@ void SiteFilter::respond(const SitePass& pass, int site, std::span<const double>
         column[at] = e / std::sqrt(pass.variance[at]);
         difference -= e * MapOf(&pass.gain[at * pass.states], n);
       }
+      if (const double share = pass.share[row]; share < 1)
+        difference = (share * difference + (1 - share) * before).eval();
       const size_t g = (row * pass.sites + size_t(site)) * pass.states;
       const Eigen::Map<const Eigen::Matrix<double, N, N>> A(&pass.A[row * pass.states * pass.states], n, n);
       next.noalias() = A * difference;

@@ -29,6 +29,8 @@ class Work {
     was_short_ |= is_spent;
     return is_spent;
   }
+  /// Of the limit that is used up.
+  double share() const { return done_ / most_; }
   bool was_short() const { return was_short_; }
   double done() const { return done_; }
 

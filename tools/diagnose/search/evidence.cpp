@@ -63,14 +63,18 @@ std::vector<Member> applied(const Proposal& proposal, std::vector<Member> member
   for (size_t i = proposal.removed.size(); i-- > 0;)
     members.erase(members.begin() + std::ptrdiff_t(proposal.removed[i]));
   const std::vector<FreeParameter> free = free_parameters(members);
-  double fraction = 1;  // all together, up to the first end of a range
+  double fraction = 1;  // all together, up to the first end of a range; what is at its end stays there
   for (size_t i = 0; i < free.size(); ++i) {
     const CandidateParameter& range = range_of(members, free[i]);
     const double value = value_of(members, free[i]), step = proposal.step[i];
     const double room = step > 0 ? range.high - value : value - range.low;
-    if (std::abs(step) > room) fraction = std::min(fraction, room / std::abs(step));
+    if (room > 0 && std::abs(step) > room) fraction = std::min(fraction, room / std::abs(step));
   }
-  for (size_t i = 0; i < free.size(); ++i) value_of(members, free[i]) += fraction * proposal.step[i];
+  for (size_t i = 0; i < free.size(); ++i) {
+    const CandidateParameter& range = range_of(members, free[i]);
+    double& value = value_of(members, free[i]);
+    value = std::clamp(value + fraction * proposal.step[i], range.low, range.high);
+  }
   for (Member member : proposal.added) {
     if (!member.candidate->amplitude_is_one)
       for (double& amplitude : member.linear) amplitude *= fraction;

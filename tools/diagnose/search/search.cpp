@@ -9,7 +9,9 @@
 #include "tools/diagnose/search/flights.h"
 #include "tools/diagnose/search/law_swaps.h"
 #include "tools/diagnose/search/laws_of_one_variable.h"
+#include "tools/diagnose/search/names.h"
 #include "tools/diagnose/search/other_starts.h"
+#include "tools/diagnose/search/prune.h"
 #include "tools/diagnose/search/remaining_force.h"
 #include "tools/diagnose/search/spectrum.h"
 #include "tools/diagnose/search/trail.h"
@@ -47,6 +49,14 @@ class Search {
     if (goes_on) grow(most_effects - std::min(most_effects, best_.members.size()));
     if (auto function = function_of_velocity(trials_, best_, unknown_, candidates_.size(), trail_))
       take_nameless(std::move(*function));
+    return {std::move(best_), std::move(trail_)};
+  }
+
+  SearchResult run_on(const std::vector<Member>& members) {
+    most_work_ = trials_.work->share() + criteria::work_going_on;
+    take(refined(members, 4));
+    note("searched on");
+    if (best_.is_valid) grow(4);
     return {std::move(best_), std::move(trail_)};
   }
 
@@ -109,7 +119,7 @@ class Search {
     return starts.empty() ? best : refined(best.members, 6);
   }
 
-  bool is_spent() const { return trials_.work->is_spent(criteria::work_of_search); }
+  bool is_spent() const { return trials_.work->is_spent(most_work_); }
   bool is_much_left() const { return best_.mean_square >= criteria::much_left; }
 
   /// False when nothing more was found.
@@ -206,15 +216,6 @@ class Search {
     return proposals;
   }
 
-  /// A spline adapts itself to small errors of an effect: it must explain a tenth more.
-  double worth_losing_names() const {
-    return std::max(criteria::least_gain_without_name,
-                    criteria::least_gain_without_name_per_row * double(fitted_numbers(trials_)));
-  }
-  static bool has_unknown(const Estimate& e) {
-    return std::ranges::any_of(e.members, [](const Member& m) { return m.candidate->is_unknown; });
-  }
-
   void take_nameless(Estimate better) {
     take(std::move(better));
     note("without a name");
@@ -224,7 +225,7 @@ class Search {
   /// And the effects that had substituted for it.
   bool explain_without_name() {
     Estimate best;
-    double best_score = score(best_) - worth_losing_names();
+    double best_score = score(best_) - worth_losing_names(trials_);
     for (const Proposal& proposal : without_name()) {
       Estimate trial = refined(applied(proposal, best_.members), 2);
       if (!trial.is_valid || score(trial) >= best_score) continue;
@@ -264,7 +265,9 @@ class Search {
       note("started without a name");
       grow(4);
       best = fit_members(trials_, best.members, noise_, best.motion, 1);  // noise in its present state
-      const double least = has_unknown(best) || !has_unknown(best_) ? 0 : worth_losing_names();
+      const bool loses_names =
+          has_function_without_name(best_.members) && !has_function_without_name(best.members);
+      const double least = loses_names ? worth_losing_names(trials_) : 0;
       if (score(best_) < score(best) - least) best = std::move(best_);
     }
     take(std::move(best));
@@ -289,7 +292,7 @@ class Search {
   Estimate best_of(const std::vector<std::vector<Member>>& others, double& best_gain) {
     Estimate best;
     for (const std::vector<Member>& members : others) {
-      Estimate trial = pruned(refined(members, 4));
+      Estimate trial = pruned(trials_, refined(members, 4), noise_, candidates_.size());
       const double gain = gain_of(trial);
       trail_.push_back(fmt::format("tried instead {}: criterion {:+.1f}", names_of(members), -gain));
       const double preferred = gain + preference(trials_, trial.members, best_.members);
@@ -334,25 +337,10 @@ class Search {
   }
 
   void prune() {
-    Estimate left = pruned(best_);
+    Estimate left = pruned(trials_, best_, noise_, candidates_.size());
     if (left.members.size() == best_.members.size()) return;
     take(std::move(left));
     note("removed");
-  }
-
-  /// Without the members that do not justify their cost.
-  Estimate pruned(Estimate estimate) {
-    while (estimate.is_valid && estimate.members.size() > 1) {
-      const Evidence evidence(trials_, estimate, {}, candidates_.size());
-      const std::vector<double> gains = evidence.gains_of_removal(double(fitted_numbers(trials_)));
-      const size_t worst = size_t(std::ranges::max_element(gains) - gains.begin());
-      if (gains[worst] < -10) break;
-      Estimate without =
-          fit_members(trials_, without_one(estimate.members, worst), noise_, estimate.motion, 4);
-      if (!without.is_valid || score(without) > score(estimate)) break;
-      estimate = std::move(without);
-    }
-    return estimate;
   }
 
   /// Once little is left to find, the noise level can be estimated from the remainder.
@@ -385,6 +373,7 @@ class Search {
   std::vector<Shape> periodic_, nameless_;
   Estimate best_;
   std::optional<Evidence> evidence_;  // of best_
+  double most_work_ = criteria::work_of_search;
   std::vector<std::string> trail_;
 };
 
@@ -395,6 +384,13 @@ SearchResult search(Trials& trials, const std::vector<Candidate>& candidates,
                     const Motion& motion) {
   const WithoutFlights without(trials);
   return Search(trials, candidates, shapes, unknown, motion).run();
+}
+
+SearchResult search_on(Trials& trials, const std::vector<Candidate>& candidates,
+                       const std::vector<Shape>& shapes, const std::vector<Candidate>& unknown,
+                       const Motion& motion, const std::vector<Member>& members) {
+  const WithoutFlights without(trials);
+  return Search(trials, candidates, shapes, unknown, motion).run_on(members);
 }
 
 }  // namespace loopwright::diagnosis

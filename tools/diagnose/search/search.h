@@ -16,4 +16,9 @@ SearchResult search(Trials& trials, const std::vector<Candidate>& candidates,
                     const std::vector<Shape>& shapes, const std::vector<Candidate>& unknown,
                     const Motion& motion);
 
+/// Goes on from an answer that leaves something, with the members it has.
+SearchResult search_on(Trials& trials, const std::vector<Candidate>& candidates,
+                       const std::vector<Shape>& shapes, const std::vector<Candidate>& unknown,
+                       const Motion& motion, const std::vector<Member>& members);
+
 }  // namespace loopwright::diagnosis

@@ -261,7 +261,7 @@ SiteNoise SiteFitter::best_noise(const SitePass& pass, const SiteNoise& from) co
   double reached = 0;
   try {
     search.optimize(x, reached);
-  } catch (const std::exception&) {  // rounding: x is the best point so far
+  } catch (const nlopt::roundoff_limited&) {  // x is the best point so far
   }
   return noise_at(x);
 }

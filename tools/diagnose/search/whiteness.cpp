@@ -139,7 +139,7 @@ LaggedProducts lagged_products(const Trials& trials, const std::vector<Fitted>& 
                                size_t together) {
   const size_t lags = criteria::portmanteau_lags;
   LaggedProducts products{std::vector<double>(lags + 1)};
-  std::vector<double> error;
+  std::vector<double> pairs(lags + 1), error;
   std::vector<char> counts;
   for (size_t t = 0; t < trials.list.size(); ++t) {
     const Trial& trial = trials.list[t];
@@ -155,9 +155,11 @@ LaggedProducts lagged_products(const Trials& trials, const std::vector<Fitted>& 
       if (!counts[k]) continue;
       products.rows += 1;
       for (size_t lag = 0; lag <= std::min(lags, k); ++lag)
-        if (counts[k - lag]) products.sum[lag] += error[k] * error[k - lag];
+        if (counts[k - lag]) products.sum[lag] += error[k] * error[k - lag], pairs[lag] += 1;
     }
   }
+  for (size_t lag = 1; lag <= lags; ++lag)
+    if (pairs[lag] > 0) products.sum[lag] *= std::sqrt(products.rows / pairs[lag]);
   return products;
 }
 

@@ -4,7 +4,8 @@
 
 namespace loopwright::diagnosis {
 
-/// Σ e(k) e(k - lag) over the fitted rows, for lags from 0 to 40.
+/// Σ e(k) e(k - lag) over the fitted rows, for lags from 0 to 40. Where rows are left out a lag has fewer
+/// pairs: its sum is scaled so that white errors give it the variance that it has with a pair for every row.
 struct LaggedProducts {
   std::vector<double> sum;
   double rows = 0;
@@ -28,8 +29,8 @@ using WhitenedErrors = std::vector<std::vector<double>>;
 /// Those that the counts of the first sensor and the noise of this estimate would give if nothing were
 /// missing. At slow or steady speeds counts are not white, and resemble a pattern or a mode: the smoothed
 /// motion is counted anew, and goes through the predictor with random noise of every other kind. Noise of the
-/// sensor may cover the pattern of the counts or not, and the noise forces may be smaller than they seem beside
-/// coarse counts, whichever leaves more of it. Empty if the sensor states no resolution.
+/// sensor may cover the pattern of the counts or not, and the noise forces may be smaller than they seem
+/// beside coarse counts, whichever leaves more of it. Empty if the sensor states no resolution.
 WhitenedErrors errors_of_counts(const Trials& trials, const Estimate& estimate);
 /// What they add to the portmanteau.
 double portmanteau_of_counts(const Trials& trials, const WhitenedErrors& errors);

@@ -83,7 +83,7 @@ std::vector<std::string> alike_sites(SiteFitter& fitter, SiteHypothesis h) {
       sentences.push_back(fmt::format("nothing at {} shows in what is measured", sites[s].name));
       continue;
     }
-    columns.emplace_back(s, column.normalized());
+    if (std::isfinite(column.norm())) columns.emplace_back(s, column.normalized());
   }
   while (!columns.empty()) {
     std::vector<std::string> alike;

@@ -323,29 +323,30 @@ class Telling {
   void judge() {
     const bool has_unknown = !result_.remainder_variables.empty();
     const bool are_noise = are_disturbances_noise();  // each of these tells what it finds
-    const bool is_white = !errors_.diverges && !errors_.leaves_slow_error && are_noise &&
-                          errors_.portmanteau < criteria::most_portmanteau_of_any_diagram;
+    const bool leaves_nothing = is_exact(errors_, model_.record());
+    const bool looks_white = !errors_.diverges && !errors_.leaves_slow_error && are_noise &&
+                             errors_.portmanteau < criteria::most_portmanteau_of_any_diagram;
+    const bool is_white = leaves_nothing || looks_white;
     const bool names = !result_.effects.empty() || !result_.moved_parameters.empty();
     const bool worse = names && simulates_worse(errors_, nominal_, result_.holds_out);
     const bool is_untold = has_untold_terms(),
                are_too_many = are_too_many_changes() || are_many_changes_in_vain(),
-               is_contradicted = has_contradicted_terms(), cancels = has_cancelling_names();
-    const bool is_open =
-        (names && search_.second_opinion && search_.second_opinion->is_open() && missed_by_far()) ||
-        is_untold || are_too_many || is_contradicted || cancels || (names && is_input_questioned_);
+               is_contradicted = has_contradicted_terms(), cancels = has_cancelling_names(),
+               is_open = (names && search_.second_opinion && search_.second_opinion->is_open() &&
+                          missed_by_far()) ||
+                         is_untold || are_too_many || is_contradicted || cancels ||
+                         (names && is_input_questioned_);
     const bool is_bent = names && misses_more_than_noise();
-    const bool is_nothing = !names && (is_left_out_ || is_exact(errors_, model_.record()));
+    const bool is_nothing = !names && (is_left_out_ || leaves_nothing);
     const bool misses_held_out =
-        result_.holds_out && !errors_.diverges &&
+        result_.holds_out && !errors_.diverges && !leaves_nothing &&
         result_.held_out_mean_square > criteria::most_held_out * std::max(1.0, result_.mean_square);
     if (misses_held_out && !is_nothing)
       result_.findings.push_back({"the held-out rows are predicted worse than the rows that were fitted",
                                   "what was found does not hold everywhere", true, false});
-    if (is_left_out_ || (is_nothing && !is_white)) {
-      RecordFinding& finding = result_.findings.emplace_back();
-      finding.what = "what remains is as small as the errors of the arithmetic";
-      finding.cost = "it is not named";
-    }
+    if (is_left_out_ || (is_nothing && !looks_white))
+      result_.findings.push_back(
+          {"what remains is as small as the errors of the arithmetic", "it is not named"});
     if (worse)
       result_.findings.push_back(
           {"with what was found, a simulation is worse than that of the diagram as it is",
@@ -354,7 +355,8 @@ class Telling {
       result_.verdict = Verdict::nothing_missing;
     else if (worse || (!names && (!is_white || misses_held_out)))
       result_.verdict = Verdict::unexplained;
-    else if (!is_white || is_open || is_bent || misses_held_out || may_stand_for_an_effect())
+    else if (!is_white || is_open || is_bent || misses_held_out ||
+             (!leaves_nothing && may_stand_for_an_effect()))
       result_.verdict = Verdict::partly_explained;
     else if (has_unknown)
       result_.verdict = Verdict::partly_explained, result_.lacks_only_a_name = true;
@@ -378,7 +380,7 @@ class Telling {
   SiteHypothesis found_;
   std::vector<size_t> place_;  ///< of each of its terms among those of the search
   bool is_left_out_ = false, is_input_questioned_ = false;
-  size_t shown_ = 0;  ///< the output whose errors are told: the one that the diagram misses worst
+  size_t shown_ = 0;  ///< the output whose errors are told
   Diagnosis& result_;
   SiteFitter fitted_, whole_;
   Eigen::MatrixXd covariance_;
