@@ -77,8 +77,9 @@ constexpr double least_white_noise = 1e-4;
 /// effect is not taken for noise.
 constexpr double usual_white_noise = 0.01, least_search_noise = 0.005, most_search_noise = 0.02;
 /// [force of the input, rms] Noise as loud as this is admitted if the errors of the nominal diagram, beside a
-/// force that walks at random as missing effects do, are as white: then it is noise.
-constexpr double loud_noise = 0.1, most_portmanteau_of_noise_seen = 120;
+/// force that walks at random as missing effects do, are as white: then it is noise. In a louder one a name
+/// explains nothing unless the diagram simulates better with it.
+constexpr double loud_noise = 0.1, most_portmanteau_of_noise_seen = 120, noise_that_hides = 0.3;
 /// [white force] Slow force of an amplifier.
 constexpr double usual_slow_noise = 0.3;
 /// [white force; density of the white force at zero frequency] A slow force that exceeds both is not noise
@@ -235,8 +236,7 @@ constexpr double same_motion = 0.01;
 /// [twice the log-likelihood] By which a load on a spring must explain more along the motion that it predicts
 /// itself: less are other roundings of the same.
 constexpr double least_gain_of_own_motion = 1;
-/// [mean square of the fitted rows] The held-out rows show something else.
-constexpr double most_held_out = 1.5;
+constexpr double most_held_out = 1.5;  ///< [mean square of the fitted rows] the others show something else
 /// [range, in logarithms; range] Of a parameter, next to its ends: a fit that is pressed against the end of a
 /// logarithmic scale creeps towards it, and an amplitude is cut off there.
 constexpr double share_of_end = 1e-3, share_of_linear_end = 1e-6;
@@ -334,6 +334,7 @@ constexpr double least_worsening = 0.01;
 /// force is no noise. Impacts that are predicted a moment too late leave up to 5 times the noise; a load with
 /// dry friction of its own, which a load of the catalogue has not, 6 to 12 times.
 constexpr double most_over_floor = 1.25, far_over_noise = 5, far_over_noise_beside_impacts = 6;
+constexpr double most_held_out_force = 1.4;  ///< [residual force of the fitted rows, or noise floor]
 /// [input, rms] Of which something must be left: laws that take away nearly all of it follow a machine that
 /// does not answer, because its sensor is dead, its drive off, or its time has another unit.
 constexpr double least_input_left = 0.02;

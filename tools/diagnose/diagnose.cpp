@@ -149,10 +149,19 @@ void forget_residual_force(Diagnosis& result) {
   result.error_before = result.error_after = unknown;
 }
 
+/// Zero would look like a perfect answer.
+void forget_what_no_row_shows(Diagnosis& result) {
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  for (DiagnosisStep& step : result.steps)
+    if (result.holds_out && step.held_out_force_rmse == 0) step.held_out_force_rmse = unknown;
+  if (result.holds_out && result.held_out_mean_square == 0) result.held_out_mean_square = unknown;
+  if (result.rows == 0) result.mean_square = unknown;
+}
+
 void tell_errors(const Trials& trials, const Conclusion& conclusion, const Inquiry& inquiry,
                  Diagnosis& result) {
   const auto error = [&](const DiagnosisStep& step) {
-    return result.holds_out ? step.held_out_force_rmse : step.force_rmse;
+    return result.holds_out && step.held_out_force_rmse > 0 ? step.held_out_force_rmse : step.force_rmse;
   };
   result.error_before = error(result.steps.front()), result.error_after = error(result.steps.back());
   const AxisModel& model = *trials.list.front().model;
@@ -212,7 +221,8 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
     };
   Diagnosis result;
   result.findings = look_at_records(trials, inverse);
-  if (auto finding = too_few_rows(trials)) result.findings.push_back(std::move(*finding));
+  if (auto finding = too_few_rows(trials))
+    result.findings.push_back(std::move(*finding)), result.has_too_few_rows = true;
   result.not_looked_for = catalogue.left_out;
   Inquiry inquiry(trials, motion, catalogue, sizes, progress);
   const Improver improver(diagram, experiments, options.load, catalogue, units, sizes);
@@ -255,6 +265,7 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
   tell_errors(trials, conclusion, inquiry, result);
   trials.run_along(Trials::Rows::all);
   judge(trials, conclusion, inquiry.motion_of_all_rows(), search_noise(trials), inverse, result);
+  forget_what_no_row_shows(result);
   if (!balances_forces(trials, inverse)) forget_residual_force(result);
   const auto members_of = [&](size_t steps) { return staircase.members[steps - 1]; };
   result.additions = improver.additions(members_of(staircase.necessary()));

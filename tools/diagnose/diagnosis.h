@@ -56,7 +56,7 @@ struct OtherExplanation {
 /// The errors with the effects up to this one.
 struct DiagnosisStep {
   std::vector<std::string> added;
-  double force_rmse = 0, held_out_force_rmse = 0;  ///< held out: see Diagnosis::holds_out
+  double force_rmse = 0, held_out_force_rmse = 0;  ///< held out: see Diagnosis::holds_out; NaN: in no row
   double simulation_rmse = 0;  ///< of the measured signal, held out where there is a hold-out: see FreeRun
   bool is_optional = false;    ///< after the knee: small improvement
 };
@@ -141,6 +141,7 @@ struct Diagnosis {
   std::vector<DiagnosedEffect> effects;              ///< strongest first
   std::vector<OtherExplanation> other_explanations;  ///< if more than one effect changes
   std::vector<DiagnosisStep> steps;                  ///< the first is the nominal diagram
+  bool has_too_few_rows = false;                     ///< for any verdict
   bool holds_out = false;  ///< otherwise everything about held-out rows is 0 and not reported
   double error_before = 0, error_after = 0, noise_floor = 0;  ///< force, held out where there is a hold-out
   std::string force_unit, position_unit, measured_unit;

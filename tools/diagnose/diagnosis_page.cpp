@@ -48,6 +48,7 @@ report::Notice verdict(const Diagnosis& d) {
                                      ". Something else is left that the catalogue does not hold. " + fall +
                                      remainder};
     default:
+      if (d.has_too_few_rows) return {Severity::warning, "Not judged: too few rows of the record count."};
       return {Severity::warning,
               "Something is missing that no effect of the catalogue explains." + remainder};
   }

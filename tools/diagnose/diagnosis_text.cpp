@@ -51,7 +51,8 @@ std::string to_text(const Diagnosis& d) {
       line("Missing, but something is left that these effects do not explain:");
       break;
     case Verdict::unexplained:
-      line("Something is missing that no effect of the catalogue explains.");
+      line(d.has_too_few_rows ? "Not judged: too few rows of the record count."
+                              : "Something is missing that no effect of the catalogue explains.");
       break;
   }
   for (const DiagnosedEffect& effect : d.effects) {

@@ -89,7 +89,11 @@ Conclusion Inquiry::gone_on(Conclusion conclusion, const std::vector<Member>& se
   std::erase_if(named, [](const Member& m) { return m.candidate->is_unknown; });
   const bool has_no_name = named.size() < members.size();
   const bool leaves_something = has_no_name || !conclusion.is_white();
-  const bool is_new = has_no_name || !are_alike(members, searched);
+  const auto was_searched = [&](const Member& m) {
+    return std::ranges::find(searched, m.candidate, &Member::candidate) != searched.end();
+  };
+  const bool is_new =
+      has_no_name || 2 * size_t(std::ranges::count_if(members, was_searched)) <= members.size();
   if (named.empty() || !leaves_something || !is_new || trials_.work->is_spent(criteria::work_to_go_on))
     return conclusion;
   std::vector<std::vector<char>> with_reversals;

@@ -29,8 +29,8 @@ class Inquiry {
   SearchResult searched(const Estimate* before = nullptr);
   /// After what was tried before.
   Conclusion concluded(std::vector<std::string> trail, const Estimate& found);
-  /// Where the conclusion reached another set than was `searched`, and leaves something, or gives a part no
-  /// name: what the search finds beside that set, if it is better.
+  /// Where at most half of the conclusion is of the set that was `searched`, and it leaves something, or
+  /// where it gives a part no name: what the search finds beside its names, if it is better.
   Conclusion gone_on(Conclusion conclusion, const std::vector<Member>& searched);
   bool is_better(const Conclusion& next, const Conclusion& before);
   Conclusion with_all_rows(std::vector<std::string> trail, const Estimate& found);

@@ -7,7 +7,6 @@
 #include "tools/diagnose/search/site_disturbance.h"
 #include "tools/diagnose/search/site_size.h"
 #include "tools/diagnose/search/stacked_names.h"
-#include "tools/diagnose/verdict/cancelling_effects.h"
 #include "tools/diagnose/verdict/site_opinion_text.h"
 #include "tools/diagnose/wording.h"
 #include "tools/diagnose/verdict/alike_sites.h"
@@ -227,7 +226,7 @@ class Telling {
   }
 
   /// Tells what a simulation needs noise in the states for. Whether it misses more than that noise explains.
-  bool misses_more_than_noise() {
+  bool misses_more_than_noise(bool with_names) {
     std::optional<size_t> worst;
     double most = 0;  // [of what noise explains]
     for (size_t j = 0; j < errors_.simulated.size() && !errors_.diverges; ++j) {
@@ -238,10 +237,11 @@ class Telling {
     if (!worst) return false;
     const double sensor = found_.noise.measurement[*worst];
     result_.findings.push_back(
-        {fmt::format("with what was found a simulation misses {} by {:.2g} times the noise of its sensor, of "
-                     "which noise inside the plant makes {:.2g} likely",
-                     model_.record().outputs[*worst].port, errors_.simulated[*worst] / sensor,
-                     errors_.expected_simulated[*worst] / sensor),
+        {fmt::format(
+             "{} a simulation misses {} by {:.2g} times the noise of its sensor, of which noise inside "
+             "the plant makes {:.2g} likely",
+             with_names ? "with what was found" : "as the diagram is", model_.record().outputs[*worst].port,
+             errors_.simulated[*worst] / sensor, errors_.expected_simulated[*worst] / sensor),
          most > 1 ? "an effect that nothing here names may bend what was found"
                   : "it is taken for that noise; it may also be an effect that bends what was found",
          most > 1, false});
@@ -336,8 +336,8 @@ class Telling {
                           missed_by_far()) ||
                          is_untold || are_too_many || is_contradicted || cancels ||
                          (names && is_input_questioned_);
-    const bool is_bent = names && misses_more_than_noise();
     const bool is_nothing = !names && (is_left_out_ || leaves_nothing);
+    const bool is_bent = !is_nothing && misses_more_than_noise(names);
     const bool misses_held_out =
         result_.holds_out && !errors_.diverges && !leaves_nothing &&
         result_.held_out_mean_square > criteria::most_held_out * std::max(1.0, result_.mean_square);
@@ -353,7 +353,7 @@ class Telling {
            "names and parameters stand for something else", true, false});
     if (is_nothing)
       result_.verdict = Verdict::nothing_missing;
-    else if (worse || (!names && (!is_white || misses_held_out)))
+    else if (worse || (!names && (!is_white || is_bent || misses_held_out)))
       result_.verdict = Verdict::unexplained;
     else if (!is_white || is_open || is_bent || misses_held_out ||
              (!leaves_nothing && may_stand_for_an_effect()))

@@ -94,6 +94,21 @@ std::string force_far_above_noise(const Trials& trials, const std::vector<Member
   return fmt::format("the residual force is {:.1f} times what the estimated noise leaves", left / floor);
 }
 
+/// What makes up for a missing effect in the fitted rows need not do so in others.
+std::string held_out_force_above_fitted(const Trials& trials, const std::vector<Member>& members,
+                                        const std::vector<InverseDynamics>& inverse,
+                                        const Diagnosis& diagnosis) {
+  if (!diagnosis.holds_out || trials.has_map() || may_be_doubtful(members)) return {};
+  const double held_out = diagnosis.steps.back().held_out_force_rmse,
+               left = std::max(diagnosis.steps.back().force_rmse, diagnosis.noise_floor);
+  const double excess = std::sqrt(std::max(0.0, held_out * held_out - left * left));
+  if (!(held_out > criteria::most_held_out_force * left) || !balances_forces(trials, inverse) ||
+      excess <= criteria::least_excess * trials.force_rms)
+    return {};
+  return fmt::format("the residual force of the held-out rows is {:.2f} times that of the fitted ones",
+                     held_out / left);
+}
+
 /// Whether the counts of the sensor may have made all that the predictions leave, and no force that matters
 /// remains. What counts make is computed for one course of the noise: that of the record may make more.
 bool is_made_by_counts(const Trials& trials, const Conclusion& conclusion, const Diagnosis& diagnosis) {
@@ -103,6 +118,22 @@ bool is_made_by_counts(const Trials& trials, const Conclusion& conclusion, const
          conclusion.counts_portmanteau > criteria::least_share_of_counts * conclusion.portmanteau &&
          conclusion.portmanteau_beside_counts() < criteria::most_portmanteau_per_row * rows &&
          left * left - floor * floor < std::pow(criteria::least_excess * trials.force_rms, 2);
+}
+
+/// In noise that is no smaller than what drives, a name for a part of it explains nothing by itself: the
+/// diagram must simulate better with it.
+std::string lost_in_noise(const Trials& trials, const Estimate& e, const Diagnosis& diagnosis) {
+  const double share = e.noise.white / trials.force_rms;
+  const double before = diagnosis.steps.front().simulation_rmse,
+               after = diagnosis.steps.back().simulation_rmse;
+  const bool simulates_better = after < (1 - criteria::least_help) * before;
+  if (e.members.empty() || trials.has_map() || !(share > criteria::noise_that_hides) || simulates_better)
+    return {};
+  return fmt::format(
+      "white noise of the force is {:.0f} % of what drives, and no simulation is better with what was found: "
+      "it "
+      "may stand for something else",
+      100 * share);
 }
 
 }  // namespace
@@ -124,13 +155,16 @@ void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, c
     diagnosis.contradictions.push_back(std::move(why));
   else if (why = force_far_above_noise(trials, e.members, inverse, diagnosis); !why.empty())
     diagnosis.contradictions.push_back(std::move(why));
+  else if (why = held_out_force_above_fitted(trials, e.members, inverse, diagnosis); !why.empty())
+    diagnosis.contradictions.push_back(std::move(why));
   for (const RefusedEffect& refused : diagnosis.refused)
     if (refused.is_of_sensor)
       diagnosis.contradictions.push_back(
           fmt::format("what resembles {} is not in the diagram: {}", refused.effect, refused.why));
   if (!std::isfinite(diagnosis.mean_square))
     diagnosis.contradictions.push_back("the errors of the predictions could not be judged");
-  for (std::string why : {why_input_is_taken_away(trials, e), why_effects_cancel(diagnosis)})
+  for (std::string why : {why_input_is_taken_away(trials, e), why_effects_cancel(diagnosis),
+                          lost_in_noise(trials, e, diagnosis)})
     if (!why.empty()) diagnosis.contradictions.push_back(std::move(why));
   if (diagnosis.simulation_diverged)
     diagnosis.contradictions.push_back("the diagram with these effects diverges when it is simulated");
