@@ -71,6 +71,14 @@ class Diagnosis(unittest.TestCase):
                 result = diagnosed(seed)
                 self.assertTrue(score.exact(result), f"{score.true_names(result)} hidden, {score.found_names(result)} named")
 
+    def test_goes_on_from_an_answer_that_leaves_something(self):
+        seeds = {905081: "a function without a name takes the place of a mass beside a load in a gap",
+                 905138: "names that cancel lead to two right ones, beside which a third is missing"}
+        for seed, why in seeds.items():
+            with self.subTest(seed=seed, why=why):
+                result = diagnosed(seed)
+                self.assertTrue(score.exact(result), f"{score.true_names(result)} hidden, {score.found_names(result)} named")
+
     def test_finds_the_mass_behind_the_gap(self):
         result = diagnosed(130015)  # a lighter load on a harder contact is a maximum of the likelihood beside the true one
         self.assertEqual(score.found_names(result), ["backlash"])

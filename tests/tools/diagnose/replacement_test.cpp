@@ -1,6 +1,7 @@
 // What takes the place of a member that is refused.
 #include "tools/diagnose/search/replacement.h"
 #include "tests/tools/diagnose/flawed_axis.h"
+#include "tools/diagnose/search/evidence.h"
 #include "tools/diagnose/search/prepare.h"
 
 namespace loopwright::diagnosis::replacement_test {
@@ -42,6 +43,20 @@ TEST(Replacement, ALateCommandTakesThePlaceOfAMemberAsAWhole) {
   const Estimate other = in_place_of(trials, with_constant, 0, {{&late, 0}}, {&constant}, 2);
   EXPECT_TRUE(other.is_valid);
   for (const Member& member : other.members) EXPECT_EQ(member.candidate, &late);
+}
+
+/// A proposal is as far as linear promises go. One that is at the end of its range would have held all
+/// others.
+TEST(Proposal, WhatIsAtTheEndOfItsRangeStaysThereAndHoldsNothingElse) {
+  Candidate constant;
+  constant.name = "constant", constant.linear = {{"level", "N", -1, 1, false, {}}};
+  for (const double present : {1.0, 1.2}) {
+    const std::vector<Member> members =
+        applied({{}, {{&constant, {0.5}, {}}}, {0.3}, 0}, {{&constant, {present}, {}}});
+    ASSERT_EQ(members.size(), 2U);
+    EXPECT_EQ(members[0].linear[0], 1);
+    EXPECT_EQ(members[1].linear[0], 0.5);
+  }
 }
 
 }  // namespace

@@ -1,5 +1,8 @@
 // What the counts of a sensor excuse.
 #include "tools/diagnose/search/whiteness.h"
+#include <cmath>
+#include "models/random/philox.h"
+#include "models/statistics/portmanteau.h"
 #include "tests/tools/diagnose/flawed_axis.h"
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/prepare.h"
@@ -40,6 +43,24 @@ TEST(Counts, WithoutAResolutionThereAreNone) {
   FlawedMachine machine;
   machine.resolution = 0;
   EXPECT_EQ(excuse(machine, 1), 0);
+}
+
+/// Rows that are left out take pairs from the lags, not their weight.
+TEST(Portmanteau, OfWhiteErrorsIsTheNumberOfLagsWhateverRowsAreLeftOut) {
+  const FlawedAxis axis(FlawedMachine{});
+  Motion motion;
+  Trials trials = prepare(axis.diagram(), {axis.experiment()}, {}, motion);
+  std::vector<Fitted> fitted(1);
+  const size_t rows = trials.list[0].usable.size();
+  for (size_t k = 0; k < rows * trials.ports(); ++k)
+    fitted[0].white.push_back(std::sqrt(12.0) * (uniform_pair(7, 1, k).first - 0.5));
+  const double lags = double(criteria::portmanteau_lags);
+  for (const size_t stretch : {size_t(20), size_t(50), rows}) {
+    for (size_t k = 0; k < rows; ++k) trials.list[0].usable[k] = k / stretch % 2 == 0;
+    const LaggedProducts products = lagged_products(trials, fitted, 0, 1);
+    EXPECT_NEAR(loopwright::portmanteau(products.sum, products.rows), lags, 3 * std::sqrt(2 * lags))
+        << stretch;
+  }
 }
 
 }  // namespace

@@ -187,6 +187,24 @@ TEST(Insertion, TwoOfAKindStandBesideEachOther) {
   EXPECT_EQ(result.status, RunStatus::finished);
 }
 
+TEST(Insertion, SeveralForcesOfOneEffectShareOneListOfSigns) {
+  for (const std::string signs : {"", R"("signs": "+", )"}) {
+    std::string text = written_axis("", "1", "0");
+    const std::string before = R"("signs": "+-", "in": {"terms": ["push.y", "viscous.force"]})";
+    text.replace(text.find(before), before.size(), signs + R"("in": {"terms": ["push.y"]})");
+    DiagramFolder folder;
+    folder.with("axis.json", text);
+    Effect twice = effect_named("constant_force");
+    twice.attachments.push_back(twice.attachments.front());
+    const InsertionSite site{{{"position", "mass.position"}, {"force", "net.sum"}}, {}, {}};
+    const auto file = source(folder.path("axis.json"));
+    const std::string with = insert_text(file, site, twice, {0.5});
+    const RunResult result = run_text(with, file->name);
+    ASSERT_EQ(result.status, RunStatus::finished) << with;
+    EXPECT_NEAR(signal(result, "mass.velocity").back(), 2 - 2 * 0.5, 1e-6) << with;
+  }
+}
+
 TEST(Insertion, WhatCanBeSetAfterwardsIsNamed) {
   Problems problems;
   const auto file = nominal();

@@ -243,7 +243,7 @@ class Telling {
              with_names ? "with what was found" : "as the diagram is", model_.record().outputs[*worst].port,
              errors_.simulated[*worst] / sensor, errors_.expected_simulated[*worst] / sensor),
          most > 1 ? "an effect that nothing here names may bend what was found"
-                  : "it is taken for that noise; it may also be an effect that bends what was found",
+                  : "it is taken for that noise; it may also be an effect that nothing here names",
          most > 1, false});
     return most > 1;
   }
