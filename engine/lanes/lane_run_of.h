@@ -47,10 +47,12 @@ template <class Real> class LaneRunOf final : public LaneRun {
     run_.evaluate(due, true);
     run_.accept();
     run_.update(due);
+    note_faults();
   }
   int64_t integrate(int64_t ticks) override {
     const int64_t passed = plan_.states > 0 ? std::min(plan_.step_ticks, ticks) : ticks;
     run_.integrate(passed);
+    note_faults();
     return passed;
   }
   void read(std::span<const Number> numbers, double* to) const override {

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include "engine/solve/solver.h"
 #include "models/real/double_functions.h"
 #include "models/real/whole.h"
@@ -186,8 +187,10 @@ class Times {
       if (time)
         for (const Fraction& f : {time->first, time->second})
           if (!add(base, f)) return false;
-    for (const auto& f : {step_, record_, std::optional(start_)})
+    for (const auto& f : {step_, record_})
       if (f && !add(base, *f)) return false;
+    start_ = beside_tick(start_, base);
+    if (!add(base, start_)) return false;
     if (base.numerator == 0) base = {1, 1000};
     plan_.clock.base = shared_ = base;
     if (!stop_) return true;
@@ -211,6 +214,18 @@ class Times {
                                     ticks, base.value()));
     p.hint = "sample times, step and record_step with a larger common divisor make longer ticks";
     return false;
+  }
+  /// A record begins at a multiple of its sample time. Of such a pair of decimals each is read as a fraction
+  /// with an error of its own, and together they would ask for ticks that cannot be counted.
+  Fraction beside_tick(const Fraction& time, const Fraction& base) const {
+    constexpr double error = 1e-6;  // of the step, or of a row
+    const double smallest =
+        std::min(step_ ? step_->value() : infinity, record_ ? record_->value() : infinity);
+    const double ticks = std::round(time.value() / base.value());
+    if (base.numerator == 0 || !(ticks * double(base.numerator) < 9e15)) return time;
+    const int64_t numerator = int64_t(ticks) * base.numerator, shared = std::gcd(numerator, base.denominator);
+    const Fraction tick{numerator / shared, base.denominator / shared};
+    return std::abs(tick.value() - time.value()) < error * smallest ? tick : time;
   }
   bool add(Fraction& base, const Fraction& time) {
     const auto both = common_divisor(base, time);

@@ -18,11 +18,23 @@ inline constexpr int64_t largest_denominator = 2'000'000'000, largest_numerator 
 
 // Static, so that a function compiled for one instruction set is never linked into code for another.
 
+/// A decimal with up to nine places that is no simple fraction, exactly. Nothing for any other number.
+[[maybe_unused]] static std::optional<Fraction> to_decimal_fraction(double x, double distance) {
+  constexpr int64_t places = 1'000'000'000;
+  const double count = std::round(x * double(places));
+  if (!(count < 9e15) || std::abs(count / double(places) - x) > distance) return {};
+  const int64_t numerator = int64_t(count), shared = std::gcd(numerator, places);
+  if (numerator / shared > largest_numerator) return {};
+  return Fraction{numerator / shared, places / shared};
+}
+
 /// The simplest fraction within this relative distance, and within a nanosecond, of x >= 0: 0.001 gives
-/// 1/1000, 1.0/3 gives 1/3. Nothing if x is not finite, negative, above 2e12, or needs a denominator of more
-/// than nine digits.
+/// 1/1000, 1.0/3 gives 1/3. Where that needs a large denominator, a decimal with nine places is kept as it
+/// is: 0.000666666 and seven times as much then have a common divisor. Nothing if x is not finite, negative,
+/// above 2e12, or needs a denominator of more than nine digits.
 [[maybe_unused]] static std::optional<Fraction> to_fraction(double x, double relative = 1e-12) {
   constexpr double nearest = 1e-9;  // s: times that differ by more are regarded as different
+  constexpr int64_t simple = 100'000;
   if (!std::isfinite(x) || x < 0) return {};
   if (x == 0) return Fraction{0, 1};
   const double distance = std::fmin(relative * x, nearest);
@@ -38,7 +50,10 @@ inline constexpr int64_t largest_denominator = 2'000'000'000, largest_numerator 
     q2 = a * q1 + q0;
     if (p2 > largest_numerator || q2 > largest_denominator) return {};
     p0 = p1, q0 = q1, p1 = p2, q1 = q2;
-    if (std::abs(double(p1) / double(q1) - x) <= distance) return Fraction{p1, q1};
+    if (std::abs(double(p1) / double(q1) - x) <= distance) {
+      const auto decimal = q1 > simple ? to_decimal_fraction(x, distance) : std::nullopt;
+      return decimal ? *decimal : Fraction{p1, q1};
+    }
     rest = 1.0 / (rest - whole);
   }
   return {};

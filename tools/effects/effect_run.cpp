@@ -264,6 +264,22 @@ void EffectRun::run_lanes(const RoleSignals& signals, size_t rows, size_t lanes,
     run_in_turn(signals, rows, std::min(lanes, lanes_->lanes()), take);
   else
     run_side_by_side(signals, rows, take);
+  refuse_faults();
+}
+
+/// A lane in which a block has faulted is computed no further, and rows may lie side by side in it.
+void EffectRun::refuse_faults() const {
+  const LaneRun& run = lanes_->run();
+  for (int lane = 0; lane < run.lanes(); ++lane) {
+    if (!(run.failed() >> lane & 1)) continue;
+    Problems problems;
+    auto& p = problems.error({}, "", "",
+                             fmt::format("the effect \"{}\" cannot be computed along the record: {}",
+                                         plan_->effect.name, to_text(run.failure(lane), plan_->plan)));
+    p.found = plan_->effect.path;
+    p.hint = "its blocks must compute wherever the record goes, as a table does with \"outside\": \"hold\"";
+    throw InputError(std::move(problems));
+  }
 }
 
 void EffectRun::run(const RoleSignals& signals, size_t rows, std::span<double> values) {

@@ -92,6 +92,7 @@ bool SegmentRun::run_once(const RoleSignals& signals, size_t rows, const std::ve
       mean[row] = lanes_.value[i], slope[row] = lanes_.slope[i];
     }
   }
+  if (lanes_.run().failed()) return false;
   for (size_t i = 1; i < segments.size(); ++i)
     if (segments[i].first < rows && segments[i].remembers_first != segments[i - 1].at_end) return false;
   return true;

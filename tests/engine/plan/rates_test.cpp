@@ -135,6 +135,16 @@ TEST(Rates, TimesWithoutACommonTickAreAnErrorThatShowsThem) {
   EXPECT_TRUE(has(text, "choose times with a simple ratio")) << text;
 }
 
+/// A record that begins at seven of its sample times, as decimals have it.
+TEST(Rates, AStartBesideATickIsOnIt) {
+  const auto plan = plan_of(diagram(
+      std::string(clock_block),
+      R"("method": "rk4", "step": 0.0003, "start": 0.004666662, "record_step": 0.000666666, "stop": 0.04)"));
+  ASSERT_TRUE(plan);
+  EXPECT_NEAR(plan->clock.time(plan->start_tick), 0.004666662, 1e-9 * 0.0003);
+  EXPECT_NEAR(plan->clock.time(plan->record_ticks), 0.000666666, 1e-15);
+}
+
 TEST(Rates, MoreTicksThanCanBeCountedAreAnError) {
   const std::string text = problems_of(diagram(hold("a", "1e-9") + std::string(clock_block),
                                                R"("stop": 1e9, "step": 1000, "record_step": 1e6)"));

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 #include <cmath>
+#include "tests/engine/written_diagram.h"
 #include "tests/tools/effects/axis_sizes.h"
 #include "tools/effects/effect_run.h"
 
@@ -23,6 +24,33 @@ TEST(EffectRun, BeginsAnewEachTime) {
       EXPECT_TRUE(again[0].mean == first[0].mean && again[0].slope == first[0].slope)
           << effect.name << " " << effect.form << " " << lanes;
     }
+}
+
+/// A table that ends within the motion: rows side by side on lanes would be those of the last row within it.
+TEST(EffectRun, RefusesABlockThatFaults) {
+  DiagramFolder folder;
+  folder.with("place.json",
+              R"json({"loopwright": 1, "effect": "place", "title": "Force of a place", "physics": "A table.",
+    "parameters": {"level": {"description": "Size", "unit": "$force", "linear": true, "range": [0, 1], "start": 0.1}},
+    "blocks": {"table": {"type": "Lookup1D", "breakpoints": [{"value": 0.25, "unit": "m"}, {"value": 0.35, "unit": "m"}],
+                         "values": [1, 2], "outside": "fault", "in": {"u": "position"}},
+               "force": {"type": "Gain", "gain": "=level", "in": {"u": "table.y"}}},
+    "attach": [{"to": "force", "from": "force.y"}], "needs": {"text": "motion"}})json");
+  Problems problems;
+  const std::vector<Effect> effects = load_effect(folder.path("place.json"), problems);
+  ASSERT_EQ(problems.text(), "");
+  for (const double way : {0.04, 0.1}) {
+    std::vector<double> position, none(3000);
+    for (size_t k = 0; k < none.size(); ++k) position.push_back(0.3 - way * std::cos(0.008 * double(k)));
+    const RoleSignals signals{position, none, none, none, none, false, {}};
+    EffectRun run(compile_effect(effects.front(), {}, axis_sizes(), problems), 1);
+    std::vector<EffectRun::Output> output(1);
+    const auto compute = [&] { run.run(signals, position.size(), output); };
+    if (way < 0.05)
+      EXPECT_NO_THROW(compute());
+    else
+      EXPECT_THROW(compute(), InputError);
+  }
 }
 
 }  // namespace loopwright::effect_run_again_test
