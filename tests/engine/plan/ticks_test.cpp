@@ -12,6 +12,8 @@ TEST(Ticks, ANumberBecomesTheSimplestFractionNearIt) {
   EXPECT_EQ(to_fraction(0), (Fraction{0, 1}));
   EXPECT_EQ(to_fraction(0.001), (Fraction{1, 1000}));
   EXPECT_EQ(to_fraction(0.0025), (Fraction{1, 400}));
+  EXPECT_EQ(to_fraction(0.000666666), (Fraction{333333, 500000000})) << "a decimal, and no simple fraction";
+  EXPECT_EQ(to_fraction(0.004666662), (Fraction{2333331, 500000000})) << "seven times as much";
   EXPECT_EQ(to_fraction(1.0 / 3000), (Fraction{1, 3000}));
   EXPECT_EQ(to_fraction(2.0 / 3), (Fraction{2, 3}));
   EXPECT_EQ(to_fraction(1e-6), (Fraction{1, 1'000'000}));
