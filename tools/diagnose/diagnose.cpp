@@ -177,6 +177,48 @@ void tell_errors(const Trials& trials, const Conclusion& conclusion, const Inqui
   result.measurement_noise = noise.measurement;
 }
 
+/// The catalogue for these records, with why each effect that is left out is not looked for.
+Catalogue catalogue_for(const Trials& trials, const std::vector<const AxisModel*>& models, bool is_smoothed,
+                        const WhyNot& cannot_be_added, const DiagnoseOptions& options,
+                        const MachineUnits& units, const RecordSizes& sizes, const Motion& motion) {
+  std::vector<std::string> folders =
+      options.catalogues.empty() ? std::vector<std::string>{catalogue_folder()} : options.catalogues;
+  std::ranges::copy(options.more_catalogues, std::back_inserter(folders));
+  const auto knows_more = [](const AxisModel* m) { return m->record().controller_may_know_more(); };
+  const auto why_not = [&](const Effect& effect) {
+    std::string why = trials.has_map() ? not_in_a_map(effect) : std::string();
+    if (why.empty() && is_smoothed) why = hidden_by_input_noise(effect);
+    if (why.empty() && std::ranges::any_of(models, knows_more)) why = hidden_by_controller(effect);
+    return why.empty() ? cannot_be_added(effect) : why;
+  };
+  return make_catalogue(folders, units, sizes, why_not, has_uneven_rows(motion.paths));
+}
+
+/// What was refused, what is too small, and what the simulations are like.
+void tell_acceptance(const Trials& trials, const Catalogue& catalogue, Acceptance& accepted,
+                     Diagnosis& result) {
+  result.refused = std::move(accepted.refused);
+  for (const SmallEffect& small : accepted.conclusion.too_small)
+    result.too_small.push_back({effect_of(catalogue, small.candidate).name, small.force_rms,
+                                small.force_rms / std::max(trials.force_rms, 1e-300), small.gain});
+  if (!accepted.why_not_run.empty()) result.contradictions.push_back(std::move(accepted.why_not_run));
+  result.steps = accepted.staircase.steps;
+  if (!accepted.runs.empty())
+    result.simulation_horizon_s = accepted.runs.back().horizon_s,
+    result.simulation_diverged = accepted.diverges, result.simulation_is_worse = accepted.is_worse;
+}
+
+/// What limits the answer beside the faults of the record.
+void tell_limits(const Trials& trials, const Acceptance& accepted, const RecordSizes& sizes,
+                 const MachineUnits& units, Diagnosis& result) {
+  const Estimate& estimate = accepted.conclusion.estimate;
+  const double white = estimate.noise.white;
+  if (white > criteria::loud_noise * trials.force_rms && !trials.has_map())
+    result.findings.push_back(noise_is_loud(white / trials.force_rms, shortest_pitch(sizes), units));
+  if (auto finding = friction_along_the_way(trials, estimate)) result.findings.push_back(std::move(*finding));
+  if (accepted.has_few_simulations()) result.findings.push_back(too_few_simulations(accepted.runs.back()));
+}
+
 /// `input_noise`: see AxisModel.
 Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std::string>& experiments,
                               const DiagnoseOptions& options,
@@ -198,18 +240,9 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
   for (const Trial& trial : trials.list) models.push_back(trial.model.get());
   const MachineUnits units = units_of(*models.front());
   const RecordSizes sizes = sizes_of(motion.paths, models);
-  std::vector<std::string> folders =
-      options.catalogues.empty() ? std::vector<std::string>{catalogue_folder()} : options.catalogues;
-  std::ranges::copy(options.more_catalogues, std::back_inserter(folders));
-  const WhyNot cannot_be_added = attachable(diagram, experiments, options.load, units, sizes);
-  const auto why_not = [&](const Effect& effect) {
-    std::string why = trials.has_map() ? not_in_a_map(effect) : std::string();
-    if (why.empty() && is_smoothed) why = hidden_by_input_noise(effect);
-    const auto knows_more = [](const AxisModel* m) { return m->record().controller_may_know_more(); };
-    if (why.empty() && std::ranges::any_of(models, knows_more)) why = hidden_by_controller(effect);
-    return why.empty() ? cannot_be_added(effect) : why;
-  };
-  const Catalogue catalogue = make_catalogue(folders, units, sizes, why_not, has_uneven_rows(motion.paths));
+  const Catalogue catalogue =
+      catalogue_for(trials, models, is_smoothed, attachable(diagram, experiments, options.load, units, sizes),
+                    options, units, sizes, motion);
   std::vector<InverseDynamics> inverse;
   for (Trial& trial : trials.list) inverse.push_back(inverse_dynamics(trial));
   trials.inverse = &inverse;
@@ -239,27 +272,14 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
   if (trials.work->was_short()) result.findings.push_back(ended_at_limit(most_work));
   const Conclusion& conclusion = accepted.conclusion;
   const Staircase& staircase = accepted.staircase;
-  result.refused = std::move(accepted.refused);
-  for (const SmallEffect& small : conclusion.too_small)
-    result.too_small.push_back({effect_of(catalogue, small.candidate).name, small.force_rms,
-                                small.force_rms / std::max(trials.force_rms, 1e-300), small.gain});
-  if (!accepted.why_not_run.empty()) result.contradictions.push_back(std::move(accepted.why_not_run));
+  tell_acceptance(trials, catalogue, accepted, result);
   result.holds_out = std::ranges::any_of(
       trials.list, [](const Trial& trial) { return trial.held_out_from < trial.usable.size(); });
   result.diagram = diagram, result.experiments = experiments, result.trail = conclusion.trail;
   result.title = models.front()->plan().title;
   result.force_unit = units.force, result.position_unit = units.position;
   result.measured_unit = models.front()->record().measured.front().unit;
-  result.steps = staircase.steps;
-  if (!accepted.runs.empty())
-    result.simulation_horizon_s = accepted.runs.back().horizon_s,
-    result.simulation_diverged = accepted.diverges, result.simulation_is_worse = accepted.is_worse;
-  const double white = accepted.conclusion.estimate.noise.white;
-  if (white > criteria::loud_noise * trials.force_rms && !trials.has_map())
-    result.findings.push_back(noise_is_loud(white / trials.force_rms, shortest_pitch(sizes), units));
-  if (auto finding = friction_along_the_way(trials, conclusion.estimate))
-    result.findings.push_back(std::move(*finding));
-  if (accepted.has_few_simulations()) result.findings.push_back(too_few_simulations(accepted.runs.back()));
+  tell_limits(trials, accepted, sizes, units, result);
   tell_effects(conclusion, staircase, catalogue, units, result);
   if (!trials.has_map()) tell_common_factor(trials, inverse, result);
   tell_errors(trials, conclusion, inquiry, result);

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -26,7 +27,10 @@ template <class F> void in_parallel(size_t count, F&& f) {
   };
   std::vector<std::jthread> threads;
   const size_t helpers = std::min<size_t>(count, std::thread::hardware_concurrency());
-  for (size_t i = 1; i < helpers; ++i) threads.emplace_back(work);
+  try {
+    for (size_t i = 1; i < helpers; ++i) threads.emplace_back(work);
+  } catch (const std::system_error&) {  // fewer threads do the same
+  }
   work();
   threads.clear();  // waits for them
   if (failure) std::rethrow_exception(failure);

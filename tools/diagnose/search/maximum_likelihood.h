@@ -19,8 +19,8 @@ struct Estimate {
 
 /// Gauss-Newton on the prediction errors with the given noise, starting from the given members. Each
 /// iteration steps the diagram once or, if a step must be shortened, a few times. The motion estimated by a
-/// better model replaces the given motion as soon as the two may differ. It ends early where the profile would
-/// stay above `worst` though every iteration left gained as much as the present one promises.
+/// better model replaces the given motion as soon as the two may differ. It ends early where the profile
+/// would stay above `worst` though every iteration left gained as much as the present one promises.
 Estimate fit_members(Trials& trials, std::vector<Member> members, const Noise& noise, const Motion& motion,
                      int iterations, double worst = std::numeric_limits<double>::infinity());
 
