@@ -105,7 +105,8 @@ Conclusion Inquiry::gone_on(Conclusion conclusion, const std::vector<Member>& se
     std::vector<std::string> trail = conclusion.trail;
     std::ranges::move(again.trail, std::back_inserter(trail));
     Conclusion next = concluded(std::move(trail), again.estimate);
-    if (is_better(next, conclusion)) return next;
+    const bool leaves_nothing = next.is_white() && !has_function_without_name(next.estimate.members);
+    if (leaves_nothing && is_better(next, conclusion)) return next;
     conclusion.trail = std::move(next.trail);
   }
   for (size_t t = 0; t < with_reversals.size(); ++t)

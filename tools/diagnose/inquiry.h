@@ -30,7 +30,8 @@ class Inquiry {
   /// After what was tried before.
   Conclusion concluded(std::vector<std::string> trail, const Estimate& found);
   /// Where at most half of the conclusion is of the set that was `searched`, and it leaves something, or
-  /// where it gives a part no name: what the search finds beside its names, if it is better.
+  /// where it gives a part no name: what the search finds beside its names, if that leaves nothing and is
+  /// better.
   Conclusion gone_on(Conclusion conclusion, const std::vector<Member>& searched);
   bool is_better(const Conclusion& next, const Conclusion& before);
   Conclusion with_all_rows(std::vector<std::string> trail, const Estimate& found);

@@ -267,8 +267,10 @@ void EffectRun::run_lanes(const RoleSignals& signals, size_t rows, size_t lanes,
   refuse_faults();
 }
 
-/// A lane in which a block has faulted is computed no further, and rows may lie side by side in it.
+/// A lane in which a block has faulted is computed no further, and rows may lie side by side in it. Beside an
+/// input of zero no effect has a size: what blocks make of no numbers is no number either.
 void EffectRun::refuse_faults() const {
+  if (!(plan_->sizes.force_level > 0)) return;
   const LaneRun& run = lanes_->run();
   for (int lane = 0; lane < run.lanes(); ++lane) {
     if (!(run.failed() >> lane & 1)) continue;
