@@ -128,13 +128,11 @@ std::vector<double> spectrum(const Trials& trials, const Estimate& estimate, con
   return explained;
 }
 
-/// The highest peaks within the range, separated by more than the resolution of the stroke. A constant is
-/// none.
+/// The highest peaks within the range, separated by more than the resolution of the stroke.
 std::vector<double> peaks(const std::vector<double>& explained, const SpatialGrid& grid, double low,
                           double high, size_t count) {
   std::vector<double> pitches;
   std::vector<double> left = explained;
-  if (!left.empty()) left[0] = 0;
   const size_t apart = grid.samples / grid.bins + 1;
   for (size_t i = 0; i < count; ++i) {
     size_t best = 0;
