@@ -20,6 +20,14 @@ size_t parts_of_a_sample(const RecordSizes& sizes) {
   return std::min(most, whole_count(std::ceil(way / (farthest * sizes.stroke))));
 }
 
+std::span<const double> column_of(const RoleSignals& signals, std::string_view role) {
+  return role == "position"       ? signals.position
+         : role == "velocity"     ? signals.velocity
+         : role == "acceleration" ? signals.acceleration
+         : role == "input"        ? signals.input
+                                  : signals.force;
+}
+
 /// Passes on rows of all lanes lane by lane, some rows at a time: to write a number to as many columns as
 /// there are lanes, row by row, takes longer than to compute them.
 template <class Take> class InBlocks {
@@ -243,12 +251,7 @@ void EffectRun::follow_modes(const RoleSignals& signals, size_t rows, size_t lan
 template <class Take>
 void EffectRun::run_lanes(const RoleSignals& signals, size_t rows, size_t lanes, Take&& take) {
   for (const std::string& role : plan_->effect.reads) {
-    const std::span<const double> column = role == "position"       ? signals.position
-                                           : role == "velocity"     ? signals.velocity
-                                           : role == "acceleration" ? signals.acceleration
-                                           : role == "input"        ? signals.input
-                                                                    : signals.force;
-    if (column.size() < rows)
+    if (column_of(signals, role).size() < rows)
       throw std::invalid_argument(
           fmt::format("the effect \"{}\" reads the {}, which is not given", plan_->effect.name, role));
   }
@@ -264,14 +267,18 @@ void EffectRun::run_lanes(const RoleSignals& signals, size_t rows, size_t lanes,
     run_in_turn(signals, rows, std::min(lanes, lanes_->lanes()), take);
   else
     run_side_by_side(signals, rows, take);
-  refuse_faults();
+  refuse_faults(signals, rows);
 }
 
-/// A lane in which a block has faulted is computed no further, and rows may lie side by side in it. Beside an
-/// input of zero no effect has a size: what blocks make of no numbers is no number either.
-void EffectRun::refuse_faults() const {
-  if (!(plan_->sizes.force_level > 0)) return;
+/// A lane in which a block has faulted is computed no further, and rows may lie side by side in it. What
+/// blocks make of no numbers, beside an input of zero or along a motion that diverges, is for the caller to
+/// see.
+void EffectRun::refuse_faults(const RoleSignals& signals, size_t rows) const {
   const LaneRun& run = lanes_->run();
+  if (!run.failed() || !(plan_->sizes.force_level > 0)) return;
+  const auto is_number = [](double x) { return std::isfinite(x); };
+  for (const std::string& role : plan_->effect.reads)
+    if (!std::ranges::all_of(column_of(signals, role).first(rows), is_number)) return;
   for (int lane = 0; lane < run.lanes(); ++lane) {
     if (!(run.failed() >> lane & 1)) continue;
     Problems problems;

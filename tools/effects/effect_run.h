@@ -59,7 +59,7 @@ class EffectRun {
   void mean_of(size_t rows, double now);
   void give_at(double fraction, size_t rows);
   void integrate_sample();
-  void refuse_faults() const;
+  void refuse_faults(const RoleSignals& signals, size_t rows) const;
   /// Passes each value and slope to take(lane, row, value, slope).
   template <class Take> void run_lanes(const RoleSignals& signals, size_t rows, size_t lanes, Take&& take);
   template <class Take> void run_in_turn(const RoleSignals& signals, size_t rows, size_t lanes, Take&& take);

@@ -130,9 +130,8 @@ std::string lost_in_noise(const Trials& trials, const Estimate& e, const Diagnos
   if (e.members.empty() || trials.has_map() || !(share > criteria::noise_that_hides) || simulates_better)
     return {};
   return fmt::format(
-      "white noise of the force is {:.0f} % of what drives, and no simulation is better with what was found: "
-      "it "
-      "may stand for something else",
+      "white noise of the force is {:.0f} % of what drives, and no simulation is better with what was "
+      "found: it may stand for something else",
       100 * share);
 }
 
