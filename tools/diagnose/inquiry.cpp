@@ -85,8 +85,7 @@ Conclusion Inquiry::concluded(std::vector<std::string> trail, const Estimate& fo
 
 Conclusion Inquiry::gone_on(Conclusion conclusion, const std::vector<Member>& searched) {
   const std::vector<Member>& members = conclusion.estimate.members;
-  std::vector<Member> named = members;
-  std::erase_if(named, [](const Member& m) { return m.candidate->is_unknown; });
+  const std::vector<Member> named = named_members(members);
   const bool has_no_name = named.size() < members.size();
   const bool leaves_something = has_no_name || !conclusion.is_white();
   const auto was_searched = [&](const Member& m) {

@@ -4,8 +4,19 @@
 
 namespace loopwright::diagnosis {
 
+namespace {
+
+bool has_no_name(const Member& member) { return member.candidate->is_unknown; }
+
+}  // namespace
+
 bool has_function_without_name(const std::vector<Member>& members) {
-  return std::ranges::any_of(members, [](const Member& m) { return m.candidate->is_unknown; });
+  return std::ranges::any_of(members, has_no_name);
+}
+
+std::vector<Member> named_members(std::vector<Member> members) {
+  std::erase_if(members, has_no_name);
+  return members;
 }
 
 double worth_losing_names(const Trials& trials) {

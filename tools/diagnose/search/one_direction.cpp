@@ -2,6 +2,7 @@
 #include <algorithm>
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/evidence.h"
+#include "tools/diagnose/search/names.h"
 #include "tools/diagnose/search/weight.h"
 
 namespace loopwright::diagnosis {
@@ -59,8 +60,7 @@ std::vector<OtherSet> alike_in_one_direction(Trials& trials, const Estimate& est
                                              const std::vector<Candidate>& candidates) {
   const std::vector<Member>& members = estimate.members;
   std::vector<OtherSet> sets;
-  const auto is_unknown = [](const Member& m) { return m.candidate->is_unknown; };
-  if (members.empty() || trials.has_map() || std::ranges::any_of(members, is_unknown) ||
+  if (members.empty() || trials.has_map() || has_function_without_name(members) ||
       !goes_one_way(trials, estimate))
     return sets;
   for (const Candidate& other : candidates) {

@@ -6,6 +6,7 @@
 #include "tools/diagnose/search/rest.h"
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/doubt.h"
+#include "tools/diagnose/search/names.h"
 #include "tools/diagnose/search/wandering_sensor.h"
 #include "tools/diagnose/verdict/cancelling_effects.h"
 #include "tools/diagnose/verdict/remainder_interval.h"
@@ -206,10 +207,7 @@ void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, c
         criteria::portmanteau_lags, conclusion.portmanteau, conclusion.counts_portmanteau));
   is_not_white |= !diagnosis.contradictions.empty();
   if (is_not_white || has_unknown) {
-    std::vector<Member> named;
-    std::ranges::copy_if(e.members, std::back_inserter(named),
-                         [](const Member& m) { return !m.candidate->is_unknown; });
-    const Estimate seen = fit_members(trials, named, tight, motion, 0);
+    const Estimate seen = fit_members(trials, named_members(e.members), tight, motion, 0);
     diagnosis.dependence = dependence_of(trials, *seen.fitted);
     diagnosis.remainder_interval = interval_of_remainder(trials, *seen.fitted);
     if (!has_unknown && !diagnosis.dependence.empty() &&
