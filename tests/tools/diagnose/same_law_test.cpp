@@ -116,12 +116,37 @@ TEST(SameLaw, OneOfTwoParametersThatAreMultipliedIsDeclaredForTheOther) {
   EXPECT_THAT(others(d), Contains(is_stiffness ? "share for stiffness" : "stiffness for share"))
       << to_text(d);
 }
+/// A plate that loses heat in proportion: both are one number.
 TEST(SameLaw, AnOffsetOfASensorIsDeclaredWhereAConstantWasFound) {
-  Plant plant = tanks({}, 73);
-  plant.outputs = [](const Numbers& x) { return Numbers{x[0], x[1] + 0.03}; };
+  Plant plant = heated_plate(nothing, 73);
+  plant.outputs = [](const Numbers& x) { return Numbers{x[0] + 0.5}; };
   const Diagnosis d = diagnosed(plant);
-  EXPECT_THAT(others(d), Contains(HasSubstr("level2.y (sensor): constant for"))) << to_text(d);
+  EXPECT_THAT(others(d), Contains(HasSubstr("(sensor): constant for"))) << to_text(d);
 }
+/// Its level feeds the outlet, so that an offset looks like a constant and another law of the outlet.
+TEST(SameLaw, OneSensorThatIsOffIsTheAnswerInThePlaceOfSeveralLaws) {
+  Plant plant = tanks({}, 74);
+  plant.outputs = [](const Numbers& x) { return Numbers{x[0], x[1] - 0.03}; };
+  plant.input = [steps = random_steps(60, 74)](double t) { return 4 + 1.2 * steps(t); };
+  const Diagnosis d = diagnosed(plant);
+  EXPECT_EQ(d.verdict, Verdict::explained) << to_text(d);
+  ASSERT_EQ(d.effects.size(), 1u) << to_text(d);
+  EXPECT_EQ(d.effects[0].site, "level2.y (sensor)");
+  EXPECT_NEAR(d.effects[0].parameters[0].value, -0.03, 1e-3);
+  EXPECT_TRUE(d.moved_parameters.empty()) << to_text(d);
+}
+TEST(SameLaw, ASensorOfAnotherScaleIsTheAnswerInThePlaceOfSeveralLaws) {
+  Plant plant = tanks({}, 75);
+  plant.outputs = [](const Numbers& x) { return Numbers{x[0], 1.06 * x[1]}; };
+  plant.input = [steps = random_steps(60, 75)](double t) { return 4 + 1.2 * steps(t); };
+  const Diagnosis d = diagnosed(plant);
+  const bool is_answer = d.effects.size() == 1 && d.effects[0].site == "level2.y (sensor)";
+  const std::vector<std::string> declared = others(d);
+  EXPECT_TRUE(is_answer || std::ranges::any_of(declared, [](const std::string& o) {
+                return o.starts_with("level2.y (sensor): linear(level2.y) for ");
+              })) << to_text(d);
+}
+
 TEST(SameLaw, AnIntervalHasEnoughDigitsToBeOne) {
   const ShownInterval told = shown_interval(1.38, 1.379992, 1.380008, "N");
   EXPECT_EQ(told.range(), "1.37999 N … 1.38001 N");

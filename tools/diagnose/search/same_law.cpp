@@ -27,6 +27,24 @@ void fit(SiteFitter& fitter, SiteHypothesis& h) {
   fitter.refine(h, 3);
 }
 
+bool is_sensor_not_looked_at(const Site& site) {
+  return site.kind == Site::Kind::sensor && !site.is_searched;
+}
+/// An offset and another scale together, where one of them explains nearly as much.
+void leave_out_idle_second_terms(std::vector<SiteHypothesis>& list) {
+  const std::vector<SiteHypothesis> all = list;
+  std::erase_if(list, [&](const SiteHypothesis& both) {
+    return both.terms.size() > 1 && std::ranges::any_of(all, [&](const SiteHypothesis& one) {
+             return one.terms.size() == 1 && one.terms[0].site == both.terms[0].site &&
+                    one.objective - both.objective < criteria::least_gain_of_term;
+           });
+  });
+}
+SiteTerm offset_of_sensor(SiteFitter& fitter, int site, const SiteNoise& noise) {
+  const int output = fitter.model().output_of_sensor(site);
+  return plain_term(fitter, "constant", site, -1, noise.measurement[size_t(output)]);
+}
+
 }  // namespace
 
 bool is_at_edge(const SiteTerm& term) {
@@ -56,17 +74,45 @@ std::vector<OffsetOfSensor> offsets_of_sensors(SiteFitter& fitter, const SiteHyp
   for (size_t t = 0; t < at.terms.size(); ++t) {
     if (at.terms[t].shape->of != TermShape::Of::nothing) continue;
     for (size_t site = 0; site < model.sites().size(); ++site) {
-      if (model.sites()[site].kind != Site::Kind::sensor || model.sites()[site].is_searched) continue;
+      if (!is_sensor_not_looked_at(model.sites()[site])) continue;
       SiteHypothesis other = without(at, t);
       std::ranges::fill(other.factors, 1.0);
       other.is_free.assign(other.is_free.size(), false);
-      const int output = model.output_of_sensor(int(site));
-      other.terms.push_back(
-          plain_term(fitter, "constant", int(site), -1, other.noise.measurement[size_t(output)]));
+      other.terms.push_back(offset_of_sensor(fitter, int(site), other.noise));
       fit(fitter, other);
       if (std::isfinite(other.objective)) list.push_back({std::move(other), t});
     }
   }
+  return list;
+}
+
+std::vector<SiteHypothesis> with_error_of_one_sensor(SiteFitter& fitter, const SiteHypothesis& nominal) {
+  constexpr int first_steps = 4, further_steps = 3;
+  constexpr size_t fitted_with_noise = 3;          // the others are hopeless after the first steps
+  constexpr double notable_error_of_scale = 0.01;  // of what is measured
+  const SiteModel& model = fitter.model();
+  std::vector<SiteHypothesis> list;
+  for (int site = 0; site < int(model.sites().size()) && !fitter.is_interrupted(); ++site) {
+    if (!is_sensor_not_looked_at(model.sites()[size_t(site)])) continue;
+    const SiteTerm offset = offset_of_sensor(fitter, site, nominal.noise),
+                   scale =
+                       plain_term(fitter, "linear", site, model.own_variable(site), notable_error_of_scale);
+    for (const std::vector<SiteTerm>& terms :
+         {std::vector{offset}, std::vector{scale}, std::vector{offset, scale}}) {
+      SiteHypothesis one = nominal;
+      one.terms = terms;
+      fitter.refine(one, first_steps);
+      if (std::isfinite(one.objective)) list.push_back(std::move(one));
+    }
+  }
+  std::ranges::stable_sort(list, {}, &SiteHypothesis::scaled_objective);
+  list.resize(std::min(fitted_with_noise, list.size()));
+  for (SiteHypothesis& one : list) {
+    fitter.anneal(one);
+    fitter.refine(one, further_steps);
+  }
+  std::ranges::stable_sort(list, {}, &SiteHypothesis::objective);
+  leave_out_idle_second_terms(list);
   return list;
 }
 

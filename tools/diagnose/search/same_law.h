@@ -1,5 +1,5 @@
-/// Other names for what a term does: a constant and a proportion for a law beyond a level, and an offset of a
-/// sensor for a constant.
+/// Other names for what terms do: a constant and a proportion for a law beyond a level, an offset of a sensor
+/// for a constant, and an error of a sensor for all that was found.
 #pragma once
 #include <optional>
 #include <vector>
@@ -21,5 +21,9 @@ struct OffsetOfSensor {
 };
 /// Of sensors that the search does not look at, for each constant that was found.
 std::vector<OffsetOfSensor> offsets_of_sensors(SiteFitter& fitter, const SiteHypothesis& at);
+
+/// The diagram as it is, and one sensor that the search does not look at with an offset, with another scale,
+/// or with both; best first. A plant that is fed back on its level answers such an error with several laws.
+std::vector<SiteHypothesis> with_error_of_one_sensor(SiteFitter& fitter, const SiteHypothesis& nominal);
 
 }  // namespace loopwright::diagnosis

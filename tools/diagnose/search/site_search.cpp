@@ -5,12 +5,11 @@
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/beyond_start.h"
 #include "tools/diagnose/search/function_in_names.h"
-#include "tools/diagnose/search/judged_fits.h"
 #include "tools/diagnose/search/late_input.h"
 #include "tools/diagnose/search/moved_parameters.h"
 #include "tools/diagnose/search/one_parameter.h"
 #include "tools/diagnose/search/same_law.h"
-#include "tools/diagnose/search/same_response.h"
+#include "tools/diagnose/search/simpler_answers.h"
 #include "tools/diagnose/search/simpler_friction.h"
 #include "tools/diagnose/search/site_disturbance.h"
 #include "tools/diagnose/search/site_screening.h"
@@ -25,11 +24,11 @@ constexpr int most_changes = 3;  // of an answer whose parameters are decided
 using criteria::least_gain_of_unknown, criteria::least_gain_of_unknown_per_reading;
 using criteria::least_improvement, criteria::least_exchange, criteria::rival_within, criteria::most_terms;
 
-class SiteSearch : JudgedFits {
+class SiteSearch : SimplerAnswers {
  public:
   SiteSearch(SiteFitter& fitter, const std::function<void(const char*, double)>& progress, ErrorsOf errors,
              const std::vector<SlowNoise>& disturbances)
-      : JudgedFits(fitter), progress_(progress), errors_(errors), disturbances_(disturbances) {}
+      : SimplerAnswers(fitter), progress_(progress), errors_(errors), disturbances_(disturbances) {}
 
   std::optional<SiteSearchResult> run() {
     SiteHypothesis& nominal = result_.nominal;
@@ -119,6 +118,7 @@ class SiteSearch : JudgedFits {
       compare_with_stated_parameters(at);
       declare_offsets_of_sensors(at);
       compare_with_one_parameter(at);
+      compare_with_sensors(at);
       if (left == 0 || !(exchange_again(at) || (name_function(at) && decide_again(at)))) break;
     }
     if (errors_ == ErrorsOf::predictions) at = without_idle_disturbances(fitter_, std::move(at));
@@ -266,14 +266,6 @@ class SiteSearch : JudgedFits {
         result_.parameter_rivals.push_back({choices[i].moved(), {}, worse});
   }
 
-  /// Takes an answer in the place of one that it is no part of.
-  void take(SiteHypothesis& at, const SiteHypothesis& other, const std::string& what) {
-    at = other;
-    tell(what, at);
-    result_.rivals.clear(), result_.parameter_rivals.clear(), result_.steps.push_back(at);
-    exchanged_beside_.clear();
-  }
-
   /// A level at the edge of the record is a name for a constant and a proportion.
   void compare_levels(SiteHypothesis& at) {
     for (size_t t = 0; t < at.terms.size() && !is_spent(criteria::work_with_rivals); ++t) {
@@ -290,41 +282,6 @@ class SiteSearch : JudgedFits {
       if (worse < most_of_rival())
         result_.parameter_rivals.push_back(
             {{}, {*(other->terms.end() - 2), other->terms.back()}, worse, t, false, true});
-    }
-  }
-
-  /// A parameter that does what a term does is the simpler explanation, and so is one that does what several
-  /// parameters do together. One that does what a single other one does is declared.
-  void compare_with_parameters_of_same_response(SiteHypothesis& at) {
-    if (is_spent(criteria::work_with_rivals)) return;
-    for (const SameResponse& other : parameters_of_same_response(fitter_, at, result_.parameters.is_free)) {
-      const double worse = whole_criterion(other.hypothesis) - whole_criterion(at);
-      tell("in the place of " + (other.of ? describe(model(), at.terms[*other.of]) : "what moved") + ": " +
-               model().parameters()[size_t(other.parameter)].name,
-           other.hypothesis);
-      const bool is_simpler = other.of || at.free_parameters() > 1;
-      if (worse < (is_simpler ? least_exchange : -least_exchange)) {
-        take(at, other.hypothesis, "it does as well");
-        return compare_with_parameters_of_same_response(at);
-      }
-      if (worse < rival_within)
-        result_.parameter_rivals.push_back(
-            {{other.parameter}, {}, worse, other.of, false, other.of.has_value()});
-    }
-  }
-
-  /// Sensors are not looked at unless the experiment says so, but what one that is off does is no constant of
-  /// the machine.
-  void declare_offsets_of_sensors(const SiteHypothesis& at) {
-    if (is_spent(criteria::work_with_rivals)) return;
-    for (const OffsetOfSensor& other : offsets_of_sensors(fitter_, at)) {
-      const double worse = criterion(other.hypothesis) - whole_criterion(at);
-      tell("in the place of " + describe(model(), at.terms[other.of]) + ": " +
-               describe(model(), other.hypothesis.terms.back()),
-           other.hypothesis);
-      if (worse < rival_within || (size_of(other.hypothesis) <= size_of(at) &&
-                                   other.hypothesis.objective - at.objective < rival_within))
-        result_.parameter_rivals.push_back({{}, {other.hypothesis.terms.back()}, worse, other.of});
     }
   }
 
@@ -352,28 +309,7 @@ class SiteSearch : JudgedFits {
     decide_parameters(at = with_free_parameters(fitter_, at));
   }
 
-  /// Terms and parameters that do what a single parameter does are that parameter.
-  void compare_with_one_parameter(SiteHypothesis& at) {
-    const size_t changes = at.terms.size() + at.free_parameters();
-    if (changes == 0) return;
-    for (const SiteHypothesis& one : single_) {
-      const int moved = moved_parameter(one);
-      if (changes == 1 && at.is_free[size_t(moved)]) continue;
-      const double worse = whole_criterion(one) - whole_criterion(at);
-      if (changes > 1 && worse < -least_exchange) {
-        take(at, one, "a single parameter does better");
-        result_.steps.clear();
-        return compare_with_one_parameter(at);
-      }
-      const double lost = one.objective - at.objective;
-      if (worse < rival_within || (changes > 1 && lost < criteria::most_lost_by_fewer_changes))
-        result_.parameter_rivals.push_back({{moved}, {}, worse, {}, true});
-    }
-  }
-
   const std::function<void(const char*, double)>& progress_;
-  std::vector<SiteHypothesis> single_;  ///< see with_one_parameter()
-  std::vector<bool> exchanged_beside_;  ///< the parameters that were free then
   double begin_ = 0.2;
   const ErrorsOf errors_;
   const std::vector<SlowNoise> disturbances_;

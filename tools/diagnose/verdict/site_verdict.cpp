@@ -1,3 +1,4 @@
+#include "tools/diagnose/verdict/sensors_not_looked_at.h"
 #include "tools/diagnose/verdict/site_verdict.h"
 #include <fmt/format.h>
 #include <algorithm>
@@ -50,7 +51,8 @@ class Telling {
     result_.all_additions = site_additions(model_, found_, none);
     is_input_questioned_ = question_inputs(fitted_, found_, result_.findings);
     judge();
-    tell_sensors_not_looked_at();
+    if (!result_.effects.empty() || !result_.moved_parameters.empty())
+      tell_sensors_not_looked_at(model_, found_, result_);
     add_site_plots(fitted_, search_.nominal, found_, result_);
   }
 
@@ -362,17 +364,6 @@ class Telling {
       result_.verdict = Verdict::partly_explained, result_.lacks_only_a_name = true;
     else
       result_.verdict = names ? Verdict::explained : Verdict::nothing_missing;
-  }
-
-  /// An offset of a sensor bends what is found in its place.
-  void tell_sensors_not_looked_at() {
-    std::vector<std::string> sensors;
-    for (const Site& site : model_.sites())
-      if (site.kind == Site::Kind::sensor && !site.is_searched) sensors.push_back(site.own_signal);
-    if (sensors.empty() || (result_.effects.empty() && result_.moved_parameters.empty())) return;
-    result_.not_looked_for.push_back(
-        {{"errors of the sensors of " + loopwright::joined(sensors, ", ")},
-         "what was found may stand for an offset of one; \"sites\" of the experiment may name the ports"});
   }
 
   SiteModel& model_;

@@ -1,0 +1,104 @@
+#include "tools/diagnose/search/simpler_answers.h"
+#include <algorithm>
+#include "tools/diagnose/criteria.h"
+#include "tools/diagnose/search/one_parameter.h"
+#include "tools/diagnose/search/same_law.h"
+#include "tools/diagnose/search/same_response.h"
+
+namespace loopwright::diagnosis {
+namespace {
+
+using criteria::least_exchange, criteria::rival_within;
+
+std::string described(const SiteModel& model, const SiteHypothesis& h) {
+  std::string text;
+  for (const SiteTerm& term : h.terms) text += (text.empty() ? "" : " + ") + describe(model, term);
+  return text;
+}
+
+}  // namespace
+
+void SimplerAnswers::take(SiteHypothesis& at, const SiteHypothesis& other, const std::string& what) {
+  at = other;
+  tell(what, at);
+  result_.rivals.clear(), result_.parameter_rivals.clear(), result_.steps.push_back(at);
+  exchanged_beside_.clear();
+}
+
+void SimplerAnswers::compare_with_parameters_of_same_response(SiteHypothesis& at) {
+  if (is_spent(criteria::work_with_rivals)) return;
+  for (const SameResponse& other : parameters_of_same_response(fitter_, at, result_.parameters.is_free)) {
+    const double worse = whole_criterion(other.hypothesis) - whole_criterion(at);
+    tell("in the place of " + (other.of ? describe(model(), at.terms[*other.of]) : "what moved") + ": " +
+             model().parameters()[size_t(other.parameter)].name,
+         other.hypothesis);
+    const bool is_simpler = other.of || at.free_parameters() > 1;
+    if (worse < (is_simpler ? least_exchange : -least_exchange)) {
+      take(at, other.hypothesis, "it does as well");
+      return compare_with_parameters_of_same_response(at);
+    }
+    if (worse < rival_within)
+      result_.parameter_rivals.push_back(
+          {{other.parameter}, {}, worse, other.of, false, other.of.has_value()});
+  }
+}
+
+void SimplerAnswers::declare_offsets_of_sensors(const SiteHypothesis& at) {
+  if (is_spent(criteria::work_with_rivals)) return;
+  for (const OffsetOfSensor& other : offsets_of_sensors(fitter_, at)) {
+    const double worse = criterion(other.hypothesis) - whole_criterion(at);
+    tell("in the place of " + describe(model(), at.terms[other.of]) + ": " +
+             describe(model(), other.hypothesis.terms.back()),
+         other.hypothesis);
+    if (worse < rival_within || (size_of(other.hypothesis) <= size_of(at) &&
+                                 other.hypothesis.objective - at.objective < rival_within))
+      result_.parameter_rivals.push_back({{}, {other.hypothesis.terms.back()}, worse, other.of});
+  }
+}
+
+void SimplerAnswers::compare_with_one_parameter(SiteHypothesis& at) {
+  const size_t changes = at.terms.size() + at.free_parameters();
+  if (changes == 0) return;
+  for (const SiteHypothesis& one : single_) {
+    const int moved = moved_parameter(one);
+    if (changes == 1 && at.is_free[size_t(moved)]) continue;
+    const double worse = whole_criterion(one) - whole_criterion(at);
+    if (changes > 1 && worse < -least_exchange) {
+      take(at, one, "a single parameter does better");
+      result_.steps.clear();
+      return compare_with_one_parameter(at);
+    }
+    const double lost = one.objective - at.objective;
+    if (worse < rival_within || (changes > 1 && lost < criteria::most_lost_by_fewer_changes))
+      result_.parameter_rivals.push_back({{moved}, {}, worse, {}, true});
+  }
+}
+
+void SimplerAnswers::compare_with_sensors(SiteHypothesis& at) {
+  if (size_of(at) == 0 || is_spent(criteria::work_with_rivals)) return;
+  if (!of_sensors_) of_sensors_ = with_error_of_one_sensor(fitter_, result_.nominal);
+  for (const SiteHypothesis& other : *of_sensors_) {
+    const double worse = criterion(other) - whole_criterion(at), lost = other.objective - at.objective;
+    tell("in the place of all: " + described(model(), other), other);
+    if (size_of(other) < size_of(at) && worse < -least_exchange && lost < rival_within && looks_everywhere())
+      return take_sensor(at, other);
+    if (worse < rival_within || (size_of(other) <= size_of(at) && lost < rival_within))
+      result_.parameter_rivals.push_back({{}, other.terms, worse, {}, true});
+  }
+}
+
+void SimplerAnswers::take_sensor(SiteHypothesis& at, const SiteHypothesis& other) {
+  ParameterRival before{{}, at.terms, whole_criterion(at) - criterion(other), {}, true};
+  for (size_t i = 0; i < at.is_free.size(); ++i)
+    if (at.is_free[i]) before.moved.push_back(int(i));
+  take(at, other, "a single sensor does as well");
+  result_.steps.clear();
+  result_.parameter_rivals.push_back(std::move(before));
+}
+
+bool SimplerAnswers::looks_everywhere() {
+  return std::ranges::none_of(
+      model().sites(), [](const Site& site) { return site.kind != Site::Kind::sensor && !site.is_searched; });
+}
+
+}  // namespace loopwright::diagnosis
