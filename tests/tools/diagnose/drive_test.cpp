@@ -47,6 +47,23 @@ TEST(Drive, ADeadBandOfAnAmplifierIsNamedWithItsWidth) {
   EXPECT_NEAR(value_of(d.effects[0], "width"), 0.1, 0.005);
 }
 
+/// A half bridge, a valve: 5 % more one way, 5 % less the other, behind noise that hid it as a spring.
+TEST(Drive, AGainThatDiffersWithTheSignOfTheCommandIsNamed) {
+  HiddenMachine machine;
+  machine.drive = [](double command, double) { return command + 0.05 * std::abs(command); };
+  HiddenAxis axis(machine);
+  const std::string experiment = axis.record("record", axis.nominal(), brisk());
+  DiagnoseOptions options;
+  options.improved_diagram = axis.file("improved.json");
+  const Diagnosis d = diagnose(axis.diagram(), {experiment}, options);
+  EXPECT_EQ(d.verdict, Verdict::explained) << to_text(d);
+  ASSERT_THAT(names(d), ElementsAre("asymmetric_gain")) << to_text(d);
+  EXPECT_NEAR(value_of(d.effects[0], "asymmetry"), 0.05, 0.003);
+  const Diagnosis after =
+      diagnose(d.improved, d.improved_experiments.empty() ? std::vector{experiment} : d.improved_experiments);
+  EXPECT_EQ(after.verdict, Verdict::nothing_missing) << to_text(after);
+}
+
 /// A force sensor of the drive: its noise is averaged by a lag, which looked like one of the machine.
 TEST(Drive, NoiseOfAMeasuredInputIsNoLag) {
   HiddenMachine machine;

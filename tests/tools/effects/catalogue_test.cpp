@@ -32,6 +32,7 @@ TEST(Catalogue, HoldsTheEffectsByTheirNames) {
                                           "velocity_dependent_cogging",
                                           "force_ripple",
                                           "force_gain",
+                                          "asymmetric_gain",
                                           "force_saturation",
                                           "dead_band",
                                           "constant_force",
