@@ -47,6 +47,8 @@ std::string any_diagram_text(const Diagnosis& d) {
   for (const MovedParameter& p : d.moved_parameters)
     line(fmt::format("  {} = {}, not {}", p.name, with_interval(p.value, p.low, p.high, p.unit),
                      shown(p.stated, p.unit)));
+  if (!d.moved_parameters.empty())
+    line("  A parameter that is known for certain is kept by \"set\" of the experiment.");
   for (const OtherExplanation& other : d.other_explanations)
     line(fmt::format("  or {} in the place of {}: this record cannot tell", words_of(other, " + "),
                      other.in_place_of.empty() ? "none" : joined(other.in_place_of, " + ")));

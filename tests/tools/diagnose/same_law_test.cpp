@@ -116,6 +116,14 @@ TEST(SameLaw, OneOfTwoParametersThatAreMultipliedIsDeclaredForTheOther) {
   EXPECT_THAT(others(d), Contains(is_stiffness ? "share for stiffness" : "stiffness for share"))
       << to_text(d);
 }
+TEST(SameLaw, AParameterThatTheExperimentStatesDoesNotMove) {
+  Plant plant = shared_stiffness(220);
+  plant.more = R"("set": {"stiffness": 200})";
+  const Diagnosis d = diagnosed(plant);
+  ASSERT_EQ(d.moved_parameters.size(), 1u) << to_text(d);
+  EXPECT_EQ(d.moved_parameters[0].name, "share");
+  EXPECT_THAT(others(d), Not(Contains(HasSubstr("stiffness for")))) << to_text(d);
+}
 /// A plate that loses heat in proportion: both are one number.
 TEST(SameLaw, AnOffsetOfASensorIsDeclaredWhereAConstantWasFound) {
   Plant plant = heated_plate(nothing, 73);
@@ -135,6 +143,19 @@ TEST(SameLaw, OneSensorThatIsOffIsTheAnswerInThePlaceOfSeveralLaws) {
   EXPECT_NEAR(d.effects[0].parameters[0].value, -0.03, 1e-3);
   EXPECT_TRUE(d.moved_parameters.empty()) << to_text(d);
 }
+TEST(SameLaw, OneSensorThatIsOffIsFoundBesideAMissingLaw) {
+  Tanks m;
+  m.lost = [](double level, double) { return 8e-4 * level; };
+  Plant plant = tanks(m, 76);
+  plant.outputs = [](const Numbers& x) { return Numbers{x[0], x[1] - 0.03}; };
+  plant.rows = 900;
+  plant.input = [steps = random_steps(60, 76)](double t) { return 4 + 1.2 * steps(t); };
+  const Diagnosis d = diagnosed(plant);
+  EXPECT_EQ(d.verdict, Verdict::explained) << to_text(d);
+  EXPECT_THAT(terms(d), testing::UnorderedElementsAre("balance1.sum: linear(level1.y)",
+                                                      "level2.y (sensor): constant()"))
+      << to_text(d);
+}
 TEST(SameLaw, ASensorOfAnotherScaleIsTheAnswerInThePlaceOfSeveralLaws) {
   Plant plant = tanks({}, 75);
   plant.outputs = [](const Numbers& x) { return Numbers{x[0], 1.06 * x[1]}; };
@@ -142,9 +163,12 @@ TEST(SameLaw, ASensorOfAnotherScaleIsTheAnswerInThePlaceOfSeveralLaws) {
   const Diagnosis d = diagnosed(plant);
   const bool is_answer = d.effects.size() == 1 && d.effects[0].site == "level2.y (sensor)";
   const std::vector<std::string> declared = others(d);
-  EXPECT_TRUE(is_answer || std::ranges::any_of(declared, [](const std::string& o) {
-                return o.starts_with("level2.y (sensor): linear(level2.y) for ");
-              })) << to_text(d);
+  EXPECT_TRUE(is_answer ||
+              std::ranges::any_of(declared,
+                                  [](const std::string& o) {
+                                    return o.starts_with("level2.y (sensor): linear(level2.y) for ");
+                                  }))
+      << to_text(d);
 }
 
 TEST(SameLaw, AnIntervalHasEnoughDigitsToBeOne) {

@@ -30,19 +30,35 @@ void fit(SiteFitter& fitter, SiteHypothesis& h) {
 bool is_sensor_not_looked_at(const Site& site) {
   return site.kind == Site::Kind::sensor && !site.is_searched;
 }
+SiteTerm offset_of_sensor(SiteFitter& fitter, int site, const SiteNoise& noise) {
+  const int output = fitter.model().output_of_sensor(site);
+  return plain_term(fitter, "constant", site, -1, noise.measurement[size_t(output)]);
+}
+
+/// Of each sensor that the search does not look at: an offset, another scale, and both.
+std::vector<std::vector<SiteTerm>> errors_of_sensors(SiteFitter& fitter, const SiteNoise& noise) {
+  constexpr double notable_error_of_scale = 0.01;  // of what is measured
+  const SiteModel& model = fitter.model();
+  std::vector<std::vector<SiteTerm>> list;
+  for (int site = 0; site < int(model.sites().size()); ++site) {
+    if (!is_sensor_not_looked_at(model.sites()[size_t(site)])) continue;
+    const SiteTerm offset = offset_of_sensor(fitter, site, noise),
+                   scale =
+                       plain_term(fitter, "linear", site, model.own_variable(site), notable_error_of_scale);
+    list.push_back({offset}), list.push_back({scale}), list.push_back({offset, scale});
+  }
+  return list;
+}
+
 /// An offset and another scale together, where one of them explains nearly as much.
 void leave_out_idle_second_terms(std::vector<SiteHypothesis>& list) {
   const std::vector<SiteHypothesis> all = list;
   std::erase_if(list, [&](const SiteHypothesis& both) {
-    return both.terms.size() > 1 && std::ranges::any_of(all, [&](const SiteHypothesis& one) {
-             return one.terms.size() == 1 && one.terms[0].site == both.terms[0].site &&
-                    one.objective - both.objective < criteria::least_gain_of_term;
-           });
+    return std::ranges::any_of(all, [&](const SiteHypothesis& one) {
+      return one.terms.size() < both.terms.size() && one.terms.back().site == both.terms.back().site &&
+             one.objective - both.objective < criteria::least_gain_of_term;
+    });
   });
-}
-SiteTerm offset_of_sensor(SiteFitter& fitter, int site, const SiteNoise& noise) {
-  const int output = fitter.model().output_of_sensor(site);
-  return plain_term(fitter, "constant", site, -1, noise.measurement[size_t(output)]);
 }
 
 }  // namespace
@@ -86,30 +102,24 @@ std::vector<OffsetOfSensor> offsets_of_sensors(SiteFitter& fitter, const SiteHyp
   return list;
 }
 
-std::vector<SiteHypothesis> with_error_of_one_sensor(SiteFitter& fitter, const SiteHypothesis& nominal) {
+std::vector<SiteHypothesis> with_error_of_one_sensor(SiteFitter& fitter,
+                                                     std::span<const SiteHypothesis> hypotheses) {
   constexpr int first_steps = 4, further_steps = 3;
-  constexpr size_t fitted_with_noise = 3;          // the others are hopeless after the first steps
-  constexpr double notable_error_of_scale = 0.01;  // of what is measured
-  const SiteModel& model = fitter.model();
+  constexpr size_t fitted_with_noise = 3;  // the others are hopeless after the first steps
   std::vector<SiteHypothesis> list;
-  for (int site = 0; site < int(model.sites().size()) && !fitter.is_interrupted(); ++site) {
-    if (!is_sensor_not_looked_at(model.sites()[size_t(site)])) continue;
-    const SiteTerm offset = offset_of_sensor(fitter, site, nominal.noise),
-                   scale =
-                       plain_term(fitter, "linear", site, model.own_variable(site), notable_error_of_scale);
-    for (const std::vector<SiteTerm>& terms :
-         {std::vector{offset}, std::vector{scale}, std::vector{offset, scale}}) {
-      SiteHypothesis one = nominal;
-      one.terms = terms;
-      fitter.refine(one, first_steps);
-      if (std::isfinite(one.objective)) list.push_back(std::move(one));
+  for (const SiteHypothesis& at : hypotheses)
+    for (const std::vector<SiteTerm>& error : errors_of_sensors(fitter, at.noise)) {
+      if (fitter.is_interrupted()) return {};
+      SiteHypothesis with = at;
+      with.terms.insert(with.terms.end(), error.begin(), error.end());
+      fitter.refine(with, first_steps);
+      if (std::isfinite(with.objective)) list.push_back(std::move(with));
     }
-  }
   std::ranges::stable_sort(list, {}, &SiteHypothesis::scaled_objective);
   list.resize(std::min(fitted_with_noise, list.size()));
-  for (SiteHypothesis& one : list) {
-    fitter.anneal(one);
-    fitter.refine(one, further_steps);
+  for (SiteHypothesis& with : list) {
+    fitter.anneal(with);
+    fitter.refine(with, further_steps);
   }
   std::ranges::stable_sort(list, {}, &SiteHypothesis::objective);
   leave_out_idle_second_terms(list);

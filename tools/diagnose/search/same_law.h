@@ -2,6 +2,7 @@
 /// for a constant, and an error of a sensor for all that was found.
 #pragma once
 #include <optional>
+#include <span>
 #include <vector>
 #include "tools/diagnose/search/site_fit.h"
 
@@ -22,8 +23,10 @@ struct OffsetOfSensor {
 /// Of sensors that the search does not look at, for each constant that was found.
 std::vector<OffsetOfSensor> offsets_of_sensors(SiteFitter& fitter, const SiteHypothesis& at);
 
-/// The diagram as it is, and one sensor that the search does not look at with an offset, with another scale,
-/// or with both; best first. A plant that is fed back on its level answers such an error with several laws.
-std::vector<SiteHypothesis> with_error_of_one_sensor(SiteFitter& fitter, const SiteHypothesis& nominal);
+/// Each hypothesis with one sensor that the search does not look at with an offset, with another scale, or
+/// with both, which are its last terms; the best of them. A plant that is fed back on what it measures
+/// answers such an error with several laws.
+std::vector<SiteHypothesis> with_error_of_one_sensor(SiteFitter& fitter,
+                                                     std::span<const SiteHypothesis> hypotheses);
 
 }  // namespace loopwright::diagnosis

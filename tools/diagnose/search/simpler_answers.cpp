@@ -12,8 +12,19 @@ using criteria::least_exchange, criteria::rival_within;
 
 std::string described(const SiteModel& model, const SiteHypothesis& h) {
   std::string text;
-  for (const SiteTerm& term : h.terms) text += (text.empty() ? "" : " + ") + describe(model, term);
+  const auto add = [&](const std::string& name) { text += (text.empty() ? "" : " + ") + name; };
+  for (size_t i = 0; i < h.is_free.size(); ++i)
+    if (h.is_free[i]) add(model.parameters()[i].name);
+  for (const SiteTerm& term : h.terms) add(describe(model, term));
   return text;
+}
+
+/// In the place of all that was found.
+ParameterRival as_rival(const SiteHypothesis& h, double worse) {
+  ParameterRival rival{{}, h.terms, worse, {}, true};
+  for (size_t i = 0; i < h.is_free.size(); ++i)
+    if (h.is_free[i]) rival.moved.push_back(int(i));
+  return rival;
 }
 
 }  // namespace
@@ -75,25 +86,48 @@ void SimplerAnswers::compare_with_one_parameter(SiteHypothesis& at) {
 }
 
 void SimplerAnswers::compare_with_sensors(SiteHypothesis& at) {
-  if (size_of(at) == 0 || is_spent(criteria::work_with_rivals)) return;
-  if (!of_sensors_) of_sensors_ = with_error_of_one_sensor(fitter_, result_.nominal);
-  for (const SiteHypothesis& other : *of_sensors_) {
-    const double worse = criterion(other) - whole_criterion(at), lost = other.objective - at.objective;
-    tell("in the place of all: " + described(model(), other), other);
-    if (size_of(other) < size_of(at) && worse < -least_exchange && lost < rival_within && looks_everywhere())
-      return take_sensor(at, other);
-    if (worse < rival_within || (size_of(other) <= size_of(at) && lost < rival_within))
-      result_.parameter_rivals.push_back({{}, other.terms, worse, {}, true});
-  }
+  if (size_of(at) == 0) return;
+  if (sensors_alone_.empty() && !is_spent(criteria::work_with_rivals))
+    sensors_alone_ = with_error_of_one_sensor(fitter_, {&result_.nominal, 1});
+  if (compare_with_sensors(at, sensors_alone_) || is_spent(criteria::work_with_rivals)) return;
+  if (const std::string changes = described(model(), at); changes != asked_beside_)
+    asked_beside_ = changes, sensors_beside_ = with_error_of_one_sensor(fitter_, changes_alone(at));
+  compare_with_sensors(at, sensors_beside_);
 }
 
-void SimplerAnswers::take_sensor(SiteHypothesis& at, const SiteHypothesis& other) {
-  ParameterRival before{{}, at.terms, whole_criterion(at) - criterion(other), {}, true};
-  for (size_t i = 0; i < at.is_free.size(); ++i)
-    if (at.is_free[i]) before.moved.push_back(int(i));
-  take(at, other, "a single sensor does as well");
-  result_.steps.clear();
-  result_.parameter_rivals.push_back(std::move(before));
+bool SimplerAnswers::compare_with_sensors(SiteHypothesis& at, const std::vector<SiteHypothesis>& others) {
+  for (const SiteHypothesis& other : others) {
+    const double worse = whole_criterion(other) - whole_criterion(at), lost = other.objective - at.objective;
+    tell("in the place of all: " + described(model(), other), other);
+    if (size_of(other) < size_of(at) && worse < -least_exchange && lost < rival_within &&
+        looks_everywhere()) {
+      ParameterRival before = as_rival(at, -worse);
+      take(at, other, "a single sensor does as well");
+      result_.steps.clear();
+      result_.parameter_rivals.push_back(std::move(before));
+      return true;
+    }
+    if (worse < rival_within || (size_of(other) <= size_of(at) && lost < rival_within))
+      result_.parameter_rivals.push_back(as_rival(other, worse));
+  }
+  return false;
+}
+
+std::vector<SiteHypothesis> SimplerAnswers::changes_alone(const SiteHypothesis& at) {
+  constexpr size_t fewest = 2, most = 5;  // of one, nothing would be left; of more, hardly one is right
+  std::vector<SiteHypothesis> list;
+  const size_t changes = at.terms.size() + at.free_parameters();
+  if (changes < fewest || changes > most) return list;
+  for (const SiteTerm& term : at.terms) {
+    list.push_back(result_.nominal);
+    list.back().terms = {term};
+  }
+  for (size_t i = 0; i < at.is_free.size(); ++i) {
+    if (!at.is_free[i]) continue;
+    list.push_back(result_.nominal);
+    list.back().is_free[i] = true, list.back().factors[i] = at.factors[i];
+  }
+  return list;
 }
 
 bool SimplerAnswers::looks_everywhere() {

@@ -1,7 +1,6 @@
 /// Answers of few numbers beside which a set that was found has to stand: a single parameter, an error of a
 /// single sensor.
 #pragma once
-#include <optional>
 #include <string>
 #include <vector>
 #include "tools/diagnose/search/judged_fits.h"
@@ -22,18 +21,22 @@ class SimplerAnswers : protected JudgedFits {
   /// Sensors are not looked at unless the experiment says so, but what one that is off does is no constant of
   /// the machine.
   void declare_offsets_of_sensors(const SiteHypothesis& at);
-  /// What a single sensor that is off does with fewer numbers is that sensor, unless the experiment limits
-  /// where something may be missing. One that does as well is declared.
+  /// What a single sensor that is off does with fewer numbers, alone or beside one of the changes, is that
+  /// sensor, unless the experiment limits where something may be missing. One that does as well is declared.
   void compare_with_sensors(SiteHypothesis& at);
 
   std::vector<SiteHypothesis> single_;  ///< see with_one_parameter()
   std::vector<bool> exchanged_beside_;  ///< the parameters that were free when terms were exchanged
 
  private:
-  void take_sensor(SiteHypothesis& at, const SiteHypothesis& other);
+  /// Whether one of the others is the answer now.
+  bool compare_with_sensors(SiteHypothesis& at, const std::vector<SiteHypothesis>& others);
+  /// The diagram with a single one of several changes, for each of them.
+  std::vector<SiteHypothesis> changes_alone(const SiteHypothesis& at);
   bool looks_everywhere();
 
-  std::optional<std::vector<SiteHypothesis>> of_sensors_;  ///< see with_error_of_one_sensor()
+  std::vector<SiteHypothesis> sensors_alone_, sensors_beside_;  ///< see with_error_of_one_sensor()
+  std::string asked_beside_;                                    ///< which changes the latter stand beside
 };
 
 }  // namespace loopwright::diagnosis

@@ -14,7 +14,7 @@ void tell_sensors_not_looked_at(const SiteModel& model, const SiteHypothesis& fo
   }
   if (sensors.empty()) return;
   result.not_looked_for.push_back(
-      {{fmt::format("errors of the sensors of {} beside something else", loopwright::joined(sensors, ", "))},
+      {{fmt::format("errors of the sensors of {} beside several changes", loopwright::joined(sensors, ", "))},
        fmt::format(
            "what was found may in part stand for an offset of one; \"sites\" of the experiment may name "
            "them, as \"{} (sensor)\"",
