@@ -4,6 +4,7 @@
 #include "tools/diagnose/search/one_parameter.h"
 #include "tools/diagnose/search/same_law.h"
 #include "tools/diagnose/search/same_response.h"
+#include "tools/diagnose/search/site_screening.h"
 
 namespace loopwright::diagnosis {
 namespace {
@@ -83,6 +84,35 @@ void SimplerAnswers::compare_with_one_parameter(SiteHypothesis& at) {
     if (worse < rival_within || (changes > 1 && lost < criteria::most_lost_by_fewer_changes))
       result_.parameter_rivals.push_back({{moved}, {}, worse, {}, true});
   }
+}
+
+bool SimplerAnswers::join_terms(SiteHypothesis& at) {
+  constexpr size_t fewest = 3;  // one term in the place of two alone was tried first of all
+  if (at.terms.size() < fewest) return false;
+  for (size_t first = 0; first < at.terms.size(); ++first)
+    for (size_t second = first + 1; second < at.terms.size(); ++second)
+      if (!is_spent(criteria::work_with_rivals) && join_terms(at, first, second)) return true;
+  return false;
+}
+
+bool SimplerAnswers::join_terms(SiteHypothesis& at, size_t first, size_t second) {
+  constexpr size_t most_tried = 2;
+  const SiteHypothesis rest = without(without(at, second), first);
+  const std::vector<SiteCandidate> ranked = rank_terms(fitter_, rest, fitter_.shapes());
+  for (const SiteHypothesis& other : fits(rest, worth_fitting(ranked, most_tried))) {
+    const double worse = whole_criterion(other) - whole_criterion(at);
+    tell("in the place of " + describe(model(), at.terms[first]) + " and " +
+             describe(model(), at.terms[second]) + ": " + describe(model(), other.terms.back()),
+         other);
+    if (size_of(other) >= size_of(at) || worse >= 0 || other.objective - at.objective >= rival_within)
+      continue;
+    ParameterRival both{{}, {at.terms[first], at.terms[second]}, -worse, other.terms.size() - 1};
+    both.keeps_parameters = true;
+    take(at, other, "one term does as well as two");
+    result_.parameter_rivals.push_back(std::move(both));
+    return true;
+  }
+  return false;
 }
 
 void SimplerAnswers::compare_with_sensors(SiteHypothesis& at) {

@@ -18,6 +18,9 @@ class SimplerAnswers : protected JudgedFits {
   void compare_with_parameters_of_same_response(SiteHypothesis& at);
   /// Terms and parameters that do what a single parameter does are that parameter.
   void compare_with_one_parameter(SiteHypothesis& at);
+  /// A single term in the place of two of several: a constant at a coupling and one at a sum that it feeds
+  /// are the constant of the other sum. The two are declared. Whether there was one.
+  bool join_terms(SiteHypothesis& at);
   /// Sensors are not looked at unless the experiment says so, but what one that is off does is no constant of
   /// the machine.
   void declare_offsets_of_sensors(const SiteHypothesis& at);
@@ -29,6 +32,7 @@ class SimplerAnswers : protected JudgedFits {
   std::vector<bool> exchanged_beside_;  ///< the parameters that were free when terms were exchanged
 
  private:
+  bool join_terms(SiteHypothesis& at, size_t first, size_t second);
   /// Whether one of the others is the answer now.
   bool compare_with_sensors(SiteHypothesis& at, const std::vector<SiteHypothesis>& others);
   /// The diagram with a single one of several changes, for each of them.
