@@ -3,6 +3,7 @@
 #include <cmath>
 #include "tests/tools/diagnose/diagnosed_plant.h"
 #include "tools/diagnose/search/same_response.h"
+#include "tools/diagnose/search/simpler_answers.h"
 #include "tools/diagnose/search/stacked_names.h"
 #include "tools/diagnose/wording.h"
 
@@ -35,9 +36,22 @@ Plant shared_stiffness(double true_one) {
   return plant;
 }
 
+/// A mass that is pushed and braked, and its spring stiffens, in a diagram that knows nothing of that.
+Plant pushed_mass(double cubic) {
+  return oscillator(
+      {.force = [=](double x, double v) { return 0.6 * v * std::abs(v) + cubic * x * x * x - 0.8; }}, 77);
+}
+
+/// Gives the steps of a search to a test.
+struct Joining : SimplerAnswers {
+  Joining(SiteFitter& fitter, double readings) : SimplerAnswers(fitter) { readings_ = readings; }
+  using SimplerAnswers::join_terms;
+  const std::vector<ParameterRival>& declared() const { return result_.parameter_rivals; }
+};
+
 class FittedOscillator : public testing::Test {
  protected:
-  FittedOscillator() {
+  explicit FittedOscillator(const Plant& plant = shared_stiffness(220)) : files(plant) {
     at.factors.assign(model.parameters().size(), 1.0), at.is_free.assign(at.factors.size(), false);
     at.noise = filter.guess_noise();
     SitePass pass;
@@ -60,7 +74,7 @@ class FittedOscillator : public testing::Test {
   }
   std::vector<bool> all() const { return std::vector<bool>(model.parameters().size(), true); }
 
-  RecordedPlant files{shared_stiffness(220)};
+  RecordedPlant files;
   SiteModel model{files.diagram(), {files.experiment()}, {}};
   SiteFilter filter{model};
   SiteFitter fitter{filter, model.record().held_out_from, [] { return false; }};
@@ -88,6 +102,41 @@ TEST_F(FittedOscillator, OneOfTwoParametersThatAreMultipliedDoesWhatTheOtherDoes
   EXPECT_NEAR(found->hypothesis.factors[size_t(found->parameter)], 1.1, 0.01);
   EXPECT_EQ(found->hypothesis.free_parameters(), 1u);
 }
+class PushedMass : public FittedOscillator {
+ protected:
+  explicit PushedMass(double cubic = 0) : FittedOscillator(pushed_mass(cubic)) {}
+  SiteTerm constant(double value) const {
+    SiteTerm t = term("constant", "", value);
+    t.variable = -1;
+    return t;
+  }
+  void fit(std::vector<SiteTerm> terms) {
+    at.terms = std::move(terms);
+    fitter.anneal(at), fitter.refine(at, 4);
+  }
+  Joining joining{fitter, double(model.record().rows())};
+};
+class StiffeningMass : public PushedMass {
+ protected:
+  StiffeningMass() : PushedMass(3000) {}
+};
+
+TEST_F(PushedMass, OneTermTakesThePlaceOfTwoThatAreOne) {
+  fit({constant(0.3), constant(0.4), term("signed_square", "mass.velocity", -0.5)});
+  ASSERT_TRUE(joining.join_terms(at));
+  ASSERT_EQ(at.terms.size(), 2u);
+  EXPECT_EQ(at.terms[0].shape->name, "signed_square");
+  EXPECT_EQ(at.terms[1].shape->name, "constant");
+  EXPECT_NEAR(at.terms[1].coefficient[0], 0.8, 0.02);
+  ASSERT_EQ(joining.declared().size(), 1u);
+  EXPECT_EQ(joining.declared()[0].of, 1u);
+}
+TEST_F(StiffeningMass, KeepsThreeTermsThatAreAllNeeded) {
+  fit({constant(0.7), term("cube", "mass.position", -2500), term("signed_square", "mass.velocity", -0.5)});
+  EXPECT_FALSE(joining.join_terms(at));
+  EXPECT_EQ(at.terms.size(), 3u);
+}
+
 TEST_F(FittedOscillator, LawsThatOpposeEachOtherCancelAndOthersDoNot) {
   const auto cancels = [&](double first, double second) {
     at.terms = {term("linear", "mass.velocity", first), term("linear", "mass.velocity", second)};

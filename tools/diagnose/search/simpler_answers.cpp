@@ -91,11 +91,11 @@ bool SimplerAnswers::join_terms(SiteHypothesis& at) {
   if (at.terms.size() < fewest) return false;
   for (size_t first = 0; first < at.terms.size(); ++first)
     for (size_t second = first + 1; second < at.terms.size(); ++second)
-      if (!is_spent(criteria::work_with_rivals) && join_terms(at, first, second)) return true;
+      if (!is_spent(criteria::work_with_rivals) && join_pair(at, first, second)) return true;
   return false;
 }
 
-bool SimplerAnswers::join_terms(SiteHypothesis& at, size_t first, size_t second) {
+bool SimplerAnswers::join_pair(SiteHypothesis& at, size_t first, size_t second) {
   constexpr size_t most_tried = 2;
   const SiteHypothesis rest = without(without(at, second), first);
   const std::vector<SiteCandidate> ranked = rank_terms(fitter_, rest, fitter_.shapes());

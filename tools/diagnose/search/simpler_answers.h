@@ -32,7 +32,7 @@ class SimplerAnswers : protected JudgedFits {
   std::vector<bool> exchanged_beside_;  ///< the parameters that were free when terms were exchanged
 
  private:
-  bool join_terms(SiteHypothesis& at, size_t first, size_t second);
+  bool join_pair(SiteHypothesis& at, size_t first, size_t second);
   /// Whether one of the others is the answer now.
   bool compare_with_sensors(SiteHypothesis& at, const std::vector<SiteHypothesis>& others);
   /// The diagram with a single one of several changes, for each of them.
