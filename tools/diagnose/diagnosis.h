@@ -13,6 +13,8 @@ struct DiagnosedParameter {
   double value = 0, low = 0, high = 0;  ///< SI; 95 % interval
   bool at_limit = false;                ///< the range of the catalogue ends here: a warning, not a result
   double times_a_turn = 0;              ///< of a pitch that is a whole part of a turn; 0: fitted
+  bool is_linear = false;               ///< a size of the effect
+  bool is_open = false;                 ///< the interval reaches the upper end of the catalogue's range
 };
 
 struct DiagnosedEffect {

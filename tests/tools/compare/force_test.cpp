@@ -23,6 +23,7 @@ struct Record {
   double unit_error = 1;
   int late = 0;           ///< delay of the force column in samples
   std::vector<int> lost;  ///< samples without a row
+  std::function<double(double)> shown = [](double force) { return force; };  ///< in its column
 
   double x(double t) const { return 0.1 - 0.1 * std::cos(phase(t)) + offset_per_second * t; }
   /// Mean force over the sample after t: the value of a held command.
@@ -41,7 +42,7 @@ struct Record {
     std::string text = "t,F,x\n";
     for (int k = 0; k * dt < duration; ++k)
       if (std::ranges::find(lost, k) == lost.end())
-        text += fmt::format("{:.3f},{:.12g},{:.12g}\n", k * dt, force((k - late) * dt), x(k * dt));
+        text += fmt::format("{:.3f},{:.12g},{:.12g}\n", k * dt, shown(force((k - late) * dt)), x(k * dt));
     folder.with("data.csv", text);
     folder.with("axis.json", diagram(R"("push": {"type": "Constant", "value": {"value": 0, "unit": "N"}},
       "viscous": {"type": "ViscousFriction", "damping": 5, "in": {"velocity": "mass.velocity"}},
@@ -111,6 +112,16 @@ TEST(ForceResidual, NamesTheVariableOnWhichItDepends) {
     record.extra = one.extra;
     EXPECT_GT(share(record.compared(), one.variable), 0.85) << one.variable;
   }
+}
+
+TEST(ForceResidual, ACommandAtItsLimitIsAFaultAndOneInStepsIsNot) {
+  Record record;
+  record.shown = [](double force) { return std::clamp(force, -1.5, 1.5); };
+  EXPECT_TRUE(has_fault(record.compared(), "saturated"));
+  record.shown = [](double force) { return force < 0 ? -1.5 : 1.5; };
+  EXPECT_FALSE(has_fault(record.compared(), "saturated")) << "two levels";
+  record.shown = [](double force) { return 1.5 * std::round(std::clamp(force / 1.5, -1.0, 1.0)); };
+  EXPECT_FALSE(has_fault(record.compared(), "saturated")) << "three levels";
 }
 
 /// A constant is a function of every variable, and none of them explains it.

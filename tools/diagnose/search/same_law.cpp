@@ -102,21 +102,24 @@ std::vector<OffsetOfSensor> offsets_of_sensors(SiteFitter& fitter, const SiteHyp
   return list;
 }
 
-std::vector<SiteHypothesis> with_error_of_one_sensor(SiteFitter& fitter,
+std::vector<SiteHypothesis> with_error_of_one_sensor(SiteFitter& fitter, const SiteHypothesis& found,
                                                      std::span<const SiteHypothesis> hypotheses) {
   constexpr int first_steps = 4, further_steps = 3;
-  constexpr size_t fitted_with_noise = 3;  // the others are hopeless after the first steps
   std::vector<SiteHypothesis> list;
-  for (const SiteHypothesis& at : hypotheses)
+  for (SiteHypothesis at : hypotheses) {
+    at.noise = found.noise;  // with which an error that explains as much shows it
+    SitePass pass;
+    if (!fitter.pass(at, false, pass)) continue;
+    const double lacking = at.scaled_objective - found.scaled_objective;
+    const double most_behind = std::max(criteria::least_behind, criteria::behind_after_all_steps * lacking);
     for (const std::vector<SiteTerm>& error : errors_of_sensors(fitter, at.noise)) {
       if (fitter.is_interrupted()) return {};
       SiteHypothesis with = at;
       with.terms.insert(with.terms.end(), error.begin(), error.end());
       fitter.refine(with, first_steps);
-      if (std::isfinite(with.objective)) list.push_back(std::move(with));
+      if (with.scaled_objective < found.scaled_objective + most_behind) list.push_back(std::move(with));
     }
-  std::ranges::stable_sort(list, {}, &SiteHypothesis::scaled_objective);
-  list.resize(std::min(fitted_with_noise, list.size()));
+  }
   for (SiteHypothesis& with : list) {
     fitter.anneal(with);
     fitter.refine(with, further_steps);

@@ -24,9 +24,9 @@ struct OffsetOfSensor {
 std::vector<OffsetOfSensor> offsets_of_sensors(SiteFitter& fitter, const SiteHypothesis& at);
 
 /// Each hypothesis with one sensor that the search does not look at with an offset, with another scale, or
-/// with both, which are its last terms; the best of them. A plant that is fed back on what it measures
-/// answers such an error with several laws.
-std::vector<SiteHypothesis> with_error_of_one_sensor(SiteFitter& fitter,
+/// with both, which are its last terms; those that come near what was found. A plant that is fed back on what
+/// it measures answers such an error with several laws.
+std::vector<SiteHypothesis> with_error_of_one_sensor(SiteFitter& fitter, const SiteHypothesis& found,
                                                      std::span<const SiteHypothesis> hypotheses);
 
 }  // namespace loopwright::diagnosis

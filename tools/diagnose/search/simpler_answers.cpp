@@ -116,13 +116,11 @@ bool SimplerAnswers::join_pair(SiteHypothesis& at, size_t first, size_t second) 
 }
 
 void SimplerAnswers::compare_with_sensors(SiteHypothesis& at) {
-  if (size_of(at) == 0) return;
-  if (sensors_alone_.empty() && !is_spent(criteria::work_with_rivals))
-    sensors_alone_ = with_error_of_one_sensor(fitter_, {&result_.nominal, 1});
-  if (compare_with_sensors(at, sensors_alone_) || is_spent(criteria::work_with_rivals)) return;
+  if (size_of(at) == 0 || is_spent(criteria::work_with_rivals)) return;
   if (const std::string changes = described(model(), at); changes != asked_beside_)
-    asked_beside_ = changes, sensors_beside_ = with_error_of_one_sensor(fitter_, changes_alone(at));
-  compare_with_sensors(at, sensors_beside_);
+    asked_beside_ = changes, of_sensors_ = with_error_of_one_sensor(fitter_, at, {&result_.nominal, 1}),
+    beside_sensors_ = with_error_of_one_sensor(fitter_, at, changes_alone(at));
+  if (!compare_with_sensors(at, of_sensors_)) compare_with_sensors(at, beside_sensors_);
 }
 
 bool SimplerAnswers::compare_with_sensors(SiteHypothesis& at, const std::vector<SiteHypothesis>& others) {

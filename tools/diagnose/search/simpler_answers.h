@@ -39,8 +39,8 @@ class SimplerAnswers : protected JudgedFits {
   std::vector<SiteHypothesis> changes_alone(const SiteHypothesis& at);
   bool looks_everywhere();
 
-  std::vector<SiteHypothesis> sensors_alone_, sensors_beside_;  ///< see with_error_of_one_sensor()
-  std::string asked_beside_;                                    ///< which changes the latter stand beside
+  std::vector<SiteHypothesis> of_sensors_, beside_sensors_;  ///< see with_error_of_one_sensor()
+  std::string asked_beside_;                                 ///< the changes in whose place they stand
 };
 
 }  // namespace loopwright::diagnosis

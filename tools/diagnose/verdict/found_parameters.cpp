@@ -40,7 +40,7 @@ std::vector<DiagnosedParameter> parameters_of_member(const Conclusion& conclusio
     // The fit looked for a shape nowhere else: what the rows do not determine may be anything within.
     if (!free[i].is_linear) low = std::max(low, range.low), high = std::min(high, range.high);
     list.push_back({range.name, without_idle_brackets(unit_in(range.unit, units)), value, low, high,
-                    range.ends_at(value)});
+                    range.ends_at(value), 0, free[i].is_linear, value + half >= range.high});
   }
   if (const Member& member = members[index]; member.is_part_of_turn) {
     const CandidateParameter& pitch = member.candidate->nonlinear[0];

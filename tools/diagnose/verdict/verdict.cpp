@@ -10,6 +10,7 @@
 #include "tools/diagnose/search/wandering_sensor.h"
 #include "tools/diagnose/verdict/cancelling_effects.h"
 #include "tools/diagnose/verdict/remainder_interval.h"
+#include "tools/diagnose/verdict/undetermined.h"
 
 namespace loopwright::diagnosis {
 
@@ -166,6 +167,9 @@ void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, c
   for (std::string why : {why_input_is_taken_away(trials, e), why_effects_cancel(diagnosis),
                           lost_in_noise(trials, e, diagnosis)})
     if (!why.empty()) diagnosis.contradictions.push_back(std::move(why));
+  for (const DiagnosedEffect& effect : diagnosis.effects)
+    if (std::string why = why_not_determined(effect); !why.empty())
+      diagnosis.contradictions.push_back(std::move(why));
   if (diagnosis.simulation_diverged)
     diagnosis.contradictions.push_back("the diagram with these effects diverges when it is simulated");
   else if (diagnosis.simulation_is_worse)

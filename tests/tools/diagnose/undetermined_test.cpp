@@ -1,0 +1,44 @@
+// Effects that a record asks for without saying how large or how slow they are.
+#include "tools/diagnose/verdict/undetermined.h"
+#include <gmock/gmock.h>
+
+namespace loopwright::diagnosis {
+namespace {
+
+using testing::HasSubstr;
+
+DiagnosedParameter size(double low, double high) {
+  return {
+      .name = "size", .unit = "N", .value = (low + high) / 2, .low = low, .high = high, .is_linear = true};
+}
+DiagnosedParameter time_of(bool is_open) {
+  return {.name = "time_constant", .unit = "s", .value = 30, .low = 1, .high = 36, .is_open = is_open};
+}
+DiagnosedEffect drift(std::vector<DiagnosedParameter> parameters) {
+  return {.name = "drift", .parameters = std::move(parameters)};
+}
+
+TEST(Undetermined, IsASizeThatMayBeZero) {
+  EXPECT_THAT(why_not_determined(drift({size(-0.7, 0.3), time_of(false)})),
+              HasSubstr("the size of drift is not determined"));
+  EXPECT_EQ(why_not_determined(drift({size(0.1, 0.3), time_of(false)})), "");
+}
+TEST(Undetermined, IsNotOneOfTwoSizes) {  // as the preload of a spring
+  EXPECT_EQ(why_not_determined(drift({size(0.1, 0.3), size(-1, 1)})), "");
+  EXPECT_NE(why_not_determined(drift({size(-0.1, 0.3), size(-1, 1)})), "");
+}
+TEST(Undetermined, IsATimeThatMayBeAsLongAsAny) {
+  EXPECT_THAT(why_not_determined(drift({size(0.1, 0.3), time_of(true)})),
+              HasSubstr("the time_constant of drift may be as long as any"));
+}
+TEST(Undetermined, IsNothingThatIsOptional) {
+  DiagnosedEffect effect = drift({size(-0.7, 0.3), time_of(true)});
+  effect.is_optional = true;
+  EXPECT_EQ(why_not_determined(effect), "");
+}
+TEST(Undetermined, IsNoShapeWithoutASize) {  // a delay
+  EXPECT_EQ(why_not_determined(drift({time_of(false)})), "");
+}
+
+}  // namespace
+}  // namespace loopwright::diagnosis
