@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include "engine/diagram/in_memory.h"
 #include "engine/json/reader.h"
+#include "engine/plan/block_settings.h"
 #include "engine/run/run.h"
 #include "tools/effects/held_effect.h"
 #include "tools/effects/linear_effect.h"
@@ -155,12 +156,35 @@ void find_bindings(const Value& value, const std::string& path, std::vector<Effe
       find_bindings(value.items[i], fmt::format("{}.{}", path, i), bindings);
 }
 
+/// What the formulas of a block read of the effect and of the record: the compiled diagram has it as further
+/// constants of the block.
+void find_formula_bindings(const Value::Member& block, const std::vector<Parameter>& parameters,
+                           std::vector<EffectPlan::Binding>& bindings) {
+  const Value::Member* name = block.value.find("type");
+  const BlockType* type = name ? find_block(name->value.text) : nullptr;
+  const auto extended = type ? settings_with_constants(type->info, block.value, parameters) : std::nullopt;
+  if (!extended) return;
+  const Value::Member* written = block.value.find("constants");
+  const std::vector<Value>& constants = extended->find("constants")->value.items;
+  for (size_t i = written ? written->value.items.size() : 0; i < constants.size(); ++i)
+    bindings.push_back({fmt::format("effect.{}.constants.{}.value", block.name, i),
+                        text_value("=" + constants[i].find("name")->value.text, block.place)});
+}
+
 std::vector<EffectPlan::Binding> bindings_of(const Effect& effect) {
+  std::vector<Parameter> parameters;
+  const auto add = [&](std::string_view name) {
+    parameters.push_back({std::string(name), "", number_value(0), {}, {}});
+  };
+  for (const NamedSize& size : record_sizes) add(size.name);
+  for (const EffectParameter& p : effect.parameters) add(p.name);
   std::vector<EffectPlan::Binding> bindings;
-  for (const Value::Member& block : effect.blocks.members)
+  for (const Value::Member& block : effect.blocks.members) {
     for (const Value::Member& setting : block.value.members)
       if (setting.name != "in" && setting.name != "sample_time")
         find_bindings(setting.value, "effect." + block.name + "." + setting.name, bindings);
+    find_formula_bindings(block, parameters, bindings);
+  }
   return bindings;
 }
 

@@ -44,7 +44,8 @@ TEST(Catalogue, HoldsTheEffectsByTheirNames) {
                                           "input_delay",
                                           "actuator_lag",
                                           "thermal_drift",
-                                          "encoder_periodic_error"};
+                                          "encoder_periodic_error",
+                                          "sensor_nonlinearity"};
   EXPECT_EQ(names, expected);
 }
 

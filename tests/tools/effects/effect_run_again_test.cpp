@@ -26,6 +26,36 @@ TEST(EffectRun, BeginsAnewEachTime) {
     }
 }
 
+/// The parameters that a formula reads are those of its own set.
+TEST(EffectRun, GivesEachSetOfAFormulaItsOwnParameters) {
+  DiagramFolder folder;
+  folder.with("bend.json",
+              R"json({"loopwright": 1, "effect": "bend", "title": "A bend", "physics": "A formula.",
+    "parameters": {"loss": {"description": "Share", "unit": "1", "linear": true, "range": [0, 2], "start": 1},
+                   "limit": {"description": "Limit", "unit": "$input", "scale": "logarithmic", "range": [0.3, 10], "start": 2}},
+    "blocks": {"motor": {"type": "Expression", "formula": "u - loss*(u - limit*tanh(u/limit))", "names": ["u"],
+                         "in": {"arguments": ["input"]}}},
+    "attach": [{"to": "input", "from": "motor.y"}], "needs": {"text": "motion"}})json");
+  Problems problems;
+  const std::vector<Effect> effects = load_effect(folder.path("bend.json"), problems);
+  ASSERT_EQ(problems.text(), "");
+  std::vector<double> none(100), input;
+  for (size_t k = 0; k < none.size(); ++k) input.push_back(0.05 * double(k));
+  const RoleSignals signals{none, none, none, input, none, false, {}};
+  for (const int lanes : {1, 8}) {
+    EffectRun run(compile_effect(effects.front(), {}, axis_sizes(), problems), lanes);
+    std::vector<EffectRun::Output> outputs(static_cast<size_t>(run.lanes()));
+    const auto limit_of = [](int lane) { return 0.5 + 0.7 * lane; };
+    for (int lane = 0; lane < run.lanes(); ++lane) run.set(0, 1, lane), run.set(1, limit_of(lane), lane);
+    run.run(signals, input.size(), outputs);
+    for (int lane = 0; lane < run.lanes(); ++lane)
+      for (size_t k = 0; k < input.size(); ++k)
+        ASSERT_NEAR(outputs[size_t(lane)].mean[k],
+                    limit_of(lane) * std::tanh(input[k] / limit_of(lane)) - input[k], 1e-6)
+            << "set " << lane << " of " << lanes << ", sample " << k;
+  }
+}
+
 /// A table that ends within the motion: rows side by side on lanes would be those of the last row within it.
 TEST(EffectRun, RefusesABlockThatFaults) {
   DiagramFolder folder;
