@@ -35,6 +35,30 @@ TEST(Drive, AnAmplifierThatLimitsItsCurrentIsNamedWithItsLimit) {
   EXPECT_FALSE(d.effects[0].is_optional);
 }
 
+/// It was told as that of iron with a drift.
+TEST(Drive, AMotorThatSaturatesSoftlyIsNamedWithItsLimit) {
+  HiddenMachine machine;
+  machine.drive = [](double command, double) { return 4 * std::tanh(command / 4); };
+  HiddenAxis axis(machine);
+  const Diagnosis d = diagnosed(axis, brisk());
+  EXPECT_EQ(d.verdict, Verdict::explained) << to_text(d);
+  ASSERT_THAT(names(d), ElementsAre("force_saturation")) << to_text(d);
+  EXPECT_EQ(d.effects[0].form, "soft");
+  EXPECT_NEAR(value_of(d.effects[0], "limit"), 4, 0.4);
+}
+
+/// It was told as a gain that differs with the direction and drag: taken for motion, its error has an
+/// acceleration.
+TEST(Drive, APositionSensorThatIsNotLinearIsNamed) {
+  HiddenMachine machine;
+  machine.sensor = [](double x) { return x + 0.3 * (x - 0.1) * (x - 0.1); };  // 3 mm at the ends of 0.2 m
+  HiddenAxis axis(machine);
+  const Diagnosis d = diagnosed(axis, there_and_back(0.2, 0.6));
+  EXPECT_EQ(d.verdict, Verdict::explained) << to_text(d);
+  ASSERT_THAT(names(d), ElementsAre("sensor_nonlinearity")) << to_text(d);
+  EXPECT_NEAR(value_of(d.effects[0], "curvature"), 0.3, 0.009) << to_text(d);
+}
+
 TEST(Drive, ADeadBandOfAnAmplifierIsNamedWithItsWidth) {
   HiddenMachine machine;
   machine.drive = [](double command, double) {

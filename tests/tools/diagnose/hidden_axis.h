@@ -93,6 +93,7 @@ struct HiddenMachine {
   double unfelt_noise = 0;  ///< of the recorded input, that the machine does not feel
   /// What arrives of a command at a time; empty: all of it.
   std::function<double(double command, double time)> drive;
+  std::function<double(double position)> sensor;  ///< what it shows; empty: the position
   /// Of the rows, which have a reading; the cells of all others are empty.
   size_t reads_position_every = 1, reads_velocity_every = 1;
   size_t loses_every = 0;  ///< one row in this number that a device would have lost; 0: none
@@ -155,9 +156,9 @@ class HiddenAxis {
       const double acceleration =
           k > 0 ? (after - 2 * x[k] + before) / (hidden_sample_time * hidden_sample_time) : 0;
       const double feedforward = machine_.mass * acceleration + machine_.damping * speed;
+      const double shown = machine_.sensor ? machine_.sensor(plant_encoder(&plant)) : plant_encoder(&plant);
       const double seen =
-          std::round((plant_encoder(&plant) + machine_.encoder_noise * random_normal(&random)) /
-                     machine_.resolution) *
+          std::round((shown + machine_.encoder_noise * random_normal(&random)) / machine_.resolution) *
           machine_.resolution;
       double force = feedforward;
       if (machine_.has_controller)

@@ -1,6 +1,7 @@
 #include "tools/diagnose/search/same_law.h"
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include "tools/diagnose/criteria.h"
 
 namespace loopwright::diagnosis {
@@ -104,19 +105,22 @@ std::vector<OffsetOfSensor> offsets_of_sensors(SiteFitter& fitter, const SiteHyp
 
 std::vector<SiteHypothesis> with_error_of_one_sensor(SiteFitter& fitter, const SiteHypothesis& found,
                                                      std::span<const SiteHypothesis> hypotheses) {
-  constexpr int first_steps = 4, further_steps = 3;
+  constexpr int first_steps = 4, steps_beside_noise_found = 2, further_steps = 3;
   std::vector<SiteHypothesis> list;
-  for (SiteHypothesis at : hypotheses) {
-    at.noise = found.noise;  // with which an error that explains as much shows it
+  for (const SiteHypothesis& at : hypotheses) {
+    SiteHypothesis bare = at;
+    bare.noise = found.noise;  // with which an error that explains as much shows it
     SitePass pass;
-    if (!fitter.pass(at, false, pass)) continue;
-    const double lacking = at.scaled_objective - found.scaled_objective;
+    const double lacking = fitter.pass(bare, false, pass) ? bare.scaled_objective - found.scaled_objective
+                                                          : std::numeric_limits<double>::infinity();
     const double most_behind = std::max(criteria::least_behind, criteria::behind_after_all_steps * lacking);
     for (const std::vector<SiteTerm>& error : errors_of_sensors(fitter, at.noise)) {
       if (fitter.is_interrupted()) return {};
       SiteHypothesis with = at;
       with.terms.insert(with.terms.end(), error.begin(), error.end());
-      fitter.refine(with, first_steps);
+      fitter.refine(with, first_steps);  // with more noise no error is too large to begin with
+      with.noise = found.noise;
+      fitter.refine(with, steps_beside_noise_found);
       if (with.scaled_objective < found.scaled_objective + most_behind) list.push_back(std::move(with));
     }
   }

@@ -1,5 +1,6 @@
 #include "tools/diagnose/search/simpler_answers.h"
 #include <algorithm>
+#include <tuple>
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/one_parameter.h"
 #include "tools/diagnose/search/same_law.h"
@@ -18,6 +19,13 @@ std::string described(const SiteModel& model, const SiteHypothesis& h) {
     if (h.is_free[i]) add(model.parameters()[i].name);
   for (const SiteTerm& term : h.terms) add(describe(model, term));
   return text;
+}
+
+/// The same laws at the same sites and the same parameters, in any order.
+bool are_same_changes(const SiteHypothesis& one, const SiteHypothesis& other) {
+  const auto place_of = [](const SiteTerm& t) { return std::tuple(t.shape, t.site, t.variable); };
+  return one.is_free == other.is_free &&
+         std::ranges::is_permutation(one.terms, other.terms, {}, place_of, place_of);
 }
 
 /// In the place of all that was found.
@@ -125,6 +133,7 @@ void SimplerAnswers::compare_with_sensors(SiteHypothesis& at) {
 
 bool SimplerAnswers::compare_with_sensors(SiteHypothesis& at, const std::vector<SiteHypothesis>& others) {
   for (const SiteHypothesis& other : others) {
+    if (are_same_changes(other, at)) continue;
     const double worse = whole_criterion(other) - whole_criterion(at), lost = other.objective - at.objective;
     tell("in the place of all: " + described(model(), other), other);
     if (size_of(other) < size_of(at) && worse < -least_exchange && lost < rival_within &&
