@@ -132,7 +132,10 @@ class Telling {
     }
     std::vector<std::string> moved;
     for (const MovedParameter& p : result_.moved_parameters) moved.push_back(p.name);
+    const auto is_told_term = [&](size_t t) { return std::ranges::find(place_, t) != place_.end(); };
     for (const ParameterRival& rival : search_.parameter_rivals) {
+      const bool is_of_nothing = found_.terms.empty() && moved.empty();
+      if (is_of_nothing || (rival.of && !is_told_term(*rival.of))) continue;
       OtherExplanation other{rival.keeps_parameters ? std::vector<std::string>{} : moved, {}};
       for (int i : rival.moved) other.effects.push_back(model_.parameters()[size_t(i)].name);
       for (const SiteTerm& term : rival.terms) other.effects.push_back(describe(model_, term));
