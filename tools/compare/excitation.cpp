@@ -73,27 +73,31 @@ bool has_varied_force(const MeasuredMotion& m) {
   return within > 0.05 * all;
 }
 
-/// Fraction of the rows on which the input stays at its highest or lowest value. A command in steps stays at
-/// each of its values as long as there.
-double saturated_part(const MeasuredMotion& m) {
-  constexpr double longer = 3;  // times the usual stay at another value, as of a slower controller
-  const auto [low, high] = std::ranges::minmax(m.input);
-  if (low == high) return 0;
-  const double width = 1e-6 * (high - low);
-  const auto is_at_limit = [&, low = low, high = high](double u) {
-    return (high > 0 && u >= high - width) || (low < 0 && u <= low + width);
-  };
-  size_t rows = 0, stays = 0, rows_within = 0, stays_within = 0;
-  for (size_t k = 0, end = 0; k < m.rows(); k = end) {
-    ++end;
-    while (end < m.rows() && std::abs(m.input[end] - m.input[k]) <= width) ++end;
-    const bool is_at = is_at_limit(m.input[k]);
-    if (is_at && end - k > 2) rows += end - k, ++stays;
-    if (!is_at) rows_within += end - k, ++stays_within;
+/// Whether the input takes few values, as a command in steps, which stands at its greatest as at any other.
+bool is_in_steps(const std::vector<double>& input, double width) {
+  constexpr size_t most_levels = 10;
+  std::vector<double> levels;
+  for (const double u : input) {
+    const auto is_same = [&](double level) { return std::abs(u - level) <= width; };
+    if (std::ranges::any_of(levels, is_same)) continue;
+    if (levels.size() == most_levels) return false;
+    levels.push_back(u);
   }
-  const bool is_in_steps = stays_within == 0 || double(rows) / double(std::max<size_t>(1, stays)) <
-                                                    longer * double(rows_within) / double(stays_within);
-  return is_in_steps ? 0 : double(rows) / double(m.rows());
+  return true;
+}
+
+/// Fraction of the rows on which the input stays at its highest or lowest value.
+double saturated_part(const MeasuredMotion& m) {
+  const auto [low, high] = std::ranges::minmax(m.input);
+  const double width = 1e-6 * (high - low);
+  if (low == high || is_in_steps(m.input, width)) return 0;
+  size_t rows = 0;
+  for (size_t k = 2; k < m.rows(); ++k) {
+    const auto all = [&](auto is) { return is(m.input[k]) && is(m.input[k - 1]) && is(m.input[k - 2]); };
+    rows += (high > 0 && all([&](double u) { return u >= high - width; })) ||
+            (low < 0 && all([&](double u) { return u <= low + width; }));
+  }
+  return double(rows) / double(m.rows());
 }
 
 /// Shifts are tried in such steps, and told if they are at least two steps and so long [s].

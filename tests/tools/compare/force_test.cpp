@@ -118,6 +118,9 @@ TEST(ForceResidual, ACommandAtItsLimitIsAFaultAndOneInStepsIsNot) {
   Record record;
   record.shown = [](double force) { return std::clamp(force, -1.5, 1.5); };
   EXPECT_TRUE(has_fault(record.compared(), "saturated"));
+  Record resting = record;
+  resting.phase = [](double t) { return t < 6 ? 0 : 3 * t + 1.5 * std::sin(0.9 * t); };
+  EXPECT_TRUE(has_fault(resting.compared(), "saturated")) << "beside a long rest";
   record.shown = [](double force) { return force < 0 ? -1.5 : 1.5; };
   EXPECT_FALSE(has_fault(record.compared(), "saturated")) << "two levels";
   record.shown = [](double force) { return 1.5 * std::round(std::clamp(force / 1.5, -1.0, 1.0)); };

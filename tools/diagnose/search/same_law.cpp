@@ -36,14 +36,19 @@ SiteTerm offset_of_sensor(SiteFitter& fitter, int site, const SiteNoise& noise) 
   return plain_term(fitter, "constant", site, -1, noise.measurement[size_t(output)]);
 }
 
-/// Of each sensor that the search does not look at: an offset, another scale, and both.
-std::vector<std::vector<SiteTerm>> errors_of_sensors(SiteFitter& fitter, const SiteNoise& noise) {
+bool has_term_at(const SiteHypothesis& h, int site) {
+  return std::ranges::find(h.terms, site, &SiteTerm::site) != h.terms.end();
+}
+
+/// Of each sensor that the search does not look at, and that has no error yet: an offset, another scale, and
+/// both.
+std::vector<std::vector<SiteTerm>> errors_of_sensors(SiteFitter& fitter, const SiteHypothesis& at) {
   constexpr double notable_error_of_scale = 0.01;  // of what is measured
   const SiteModel& model = fitter.model();
   std::vector<std::vector<SiteTerm>> list;
   for (int site = 0; site < int(model.sites().size()); ++site) {
-    if (!is_sensor_not_looked_at(model.sites()[size_t(site)])) continue;
-    const SiteTerm offset = offset_of_sensor(fitter, site, noise),
+    if (!is_sensor_not_looked_at(model.sites()[size_t(site)]) || has_term_at(at, site)) continue;
+    const SiteTerm offset = offset_of_sensor(fitter, site, at.noise),
                    scale =
                        plain_term(fitter, "linear", site, model.own_variable(site), notable_error_of_scale);
     list.push_back({offset}), list.push_back({scale}), list.push_back({offset, scale});
@@ -51,15 +56,38 @@ std::vector<std::vector<SiteTerm>> errors_of_sensors(SiteFitter& fitter, const S
   return list;
 }
 
-/// An offset and another scale together, where one of them explains nearly as much.
-void leave_out_idle_second_terms(std::vector<SiteHypothesis>& list) {
+/// Leaves out an offset and another scale together, where one of them explains nearly as much.
+void leave_out_idle_second_terms(std::vector<SiteHypothesis>& list, double least_gain) {
   const std::vector<SiteHypothesis> all = list;
   std::erase_if(list, [&](const SiteHypothesis& both) {
     return std::ranges::any_of(all, [&](const SiteHypothesis& one) {
       return one.terms.size() < both.terms.size() && one.terms.back().site == both.terms.back().site &&
-             one.objective - both.objective < criteria::least_gain_of_term;
+             one.objective - both.objective < least_gain;
     });
   });
+}
+
+/// A hypothesis with an error of each sensor; those that come near what was found.
+std::vector<SiteHypothesis> near_with_error_of_sensor(SiteFitter& fitter, const SiteHypothesis& found,
+                                                      const SiteHypothesis& at) {
+  constexpr int first_steps = 4, steps_beside_noise_found = 2;
+  std::vector<SiteHypothesis> list;
+  SiteHypothesis bare = at;
+  bare.noise = found.noise;  // with which an error that explains as much shows it
+  SitePass pass;
+  const double lacking = fitter.pass(bare, false, pass) ? bare.scaled_objective - found.scaled_objective
+                                                        : std::numeric_limits<double>::infinity();
+  const double most_behind = std::max(criteria::least_behind, criteria::behind_after_all_steps * lacking);
+  for (const std::vector<SiteTerm>& error : errors_of_sensors(fitter, at)) {
+    if (fitter.is_interrupted() || fitter.model().work().is_spent(criteria::work_with_rivals)) break;
+    SiteHypothesis with = at;
+    with.terms.insert(with.terms.end(), error.begin(), error.end());
+    fitter.refine(with, first_steps);  // with more noise no error is too large to begin with
+    with.noise = found.noise;
+    fitter.refine(with, steps_beside_noise_found);
+    if (with.scaled_objective < found.scaled_objective + most_behind) list.push_back(std::move(with));
+  }
+  return list;
 }
 
 }  // namespace
@@ -91,7 +119,7 @@ std::vector<OffsetOfSensor> offsets_of_sensors(SiteFitter& fitter, const SiteHyp
   for (size_t t = 0; t < at.terms.size(); ++t) {
     if (at.terms[t].shape->of != TermShape::Of::nothing) continue;
     for (size_t site = 0; site < model.sites().size(); ++site) {
-      if (!is_sensor_not_looked_at(model.sites()[site])) continue;
+      if (!is_sensor_not_looked_at(model.sites()[site]) || has_term_at(at, int(site))) continue;
       SiteHypothesis other = without(at, t);
       std::ranges::fill(other.factors, 1.0);
       other.is_free.assign(other.is_free.size(), false);
@@ -104,32 +132,22 @@ std::vector<OffsetOfSensor> offsets_of_sensors(SiteFitter& fitter, const SiteHyp
 }
 
 std::vector<SiteHypothesis> with_error_of_one_sensor(SiteFitter& fitter, const SiteHypothesis& found,
-                                                     std::span<const SiteHypothesis> hypotheses) {
-  constexpr int first_steps = 4, steps_beside_noise_found = 2, further_steps = 3;
+                                                     std::span<const SiteHypothesis> hypotheses,
+                                                     double least_gain) {
+  constexpr int further_steps = 3;
+  constexpr size_t most_of_each = 3;  // an offset, another scale, and both, of the same sensor
   std::vector<SiteHypothesis> list;
   for (const SiteHypothesis& at : hypotheses) {
-    SiteHypothesis bare = at;
-    bare.noise = found.noise;  // with which an error that explains as much shows it
-    SitePass pass;
-    const double lacking = fitter.pass(bare, false, pass) ? bare.scaled_objective - found.scaled_objective
-                                                          : std::numeric_limits<double>::infinity();
-    const double most_behind = std::max(criteria::least_behind, criteria::behind_after_all_steps * lacking);
-    for (const std::vector<SiteTerm>& error : errors_of_sensors(fitter, at.noise)) {
-      if (fitter.is_interrupted()) return {};
-      SiteHypothesis with = at;
-      with.terms.insert(with.terms.end(), error.begin(), error.end());
-      fitter.refine(with, first_steps);  // with more noise no error is too large to begin with
-      with.noise = found.noise;
-      fitter.refine(with, steps_beside_noise_found);
-      if (with.scaled_objective < found.scaled_objective + most_behind) list.push_back(std::move(with));
+    std::vector<SiteHypothesis> near = near_with_error_of_sensor(fitter, found, at);
+    std::ranges::stable_sort(near, {}, &SiteHypothesis::scaled_objective);
+    near.resize(std::min(most_of_each, near.size()));
+    for (SiteHypothesis& with : near) {
+      fitter.anneal(with);
+      fitter.refine(with, further_steps);
     }
+    leave_out_idle_second_terms(near, least_gain);
+    std::ranges::move(near, std::back_inserter(list));
   }
-  for (SiteHypothesis& with : list) {
-    fitter.anneal(with);
-    fitter.refine(with, further_steps);
-  }
-  std::ranges::stable_sort(list, {}, &SiteHypothesis::objective);
-  leave_out_idle_second_terms(list);
   return list;
 }
 

@@ -25,8 +25,9 @@ std::vector<OffsetOfSensor> offsets_of_sensors(SiteFitter& fitter, const SiteHyp
 
 /// Each hypothesis with one sensor that the search does not look at with an offset, with another scale, or
 /// with both, which are its last terms; those that come near what was found. A plant that is fed back on what
-/// it measures answers such an error with several laws.
+/// it measures answers such an error with several laws. `least_gain` in -2 ln L: of a second term.
 std::vector<SiteHypothesis> with_error_of_one_sensor(SiteFitter& fitter, const SiteHypothesis& found,
-                                                     std::span<const SiteHypothesis> hypotheses);
+                                                     std::span<const SiteHypothesis> hypotheses,
+                                                     double least_gain);
 
 }  // namespace loopwright::diagnosis

@@ -21,9 +21,12 @@ std::string described(const SiteModel& model, const SiteHypothesis& h) {
   return text;
 }
 
+std::tuple<const TermShape*, int, int> place_of(const SiteTerm& term) {
+  return {term.shape, term.site, term.variable};
+}
+
 /// The same laws at the same sites and the same parameters, in any order.
 bool are_same_changes(const SiteHypothesis& one, const SiteHypothesis& other) {
-  const auto place_of = [](const SiteTerm& t) { return std::tuple(t.shape, t.site, t.variable); };
   return one.is_free == other.is_free &&
          std::ranges::is_permutation(one.terms, other.terms, {}, place_of, place_of);
 }
@@ -94,12 +97,28 @@ void SimplerAnswers::compare_with_one_parameter(SiteHypothesis& at) {
   }
 }
 
-bool SimplerAnswers::join_terms(SiteHypothesis& at) {
+void SimplerAnswers::join_terms(SiteHypothesis& at, const std::function<void(SiteHypothesis&)>& decide) {
+  std::vector<std::pair<SiteTerm, ParameterRival>> joined;
+  while (join_any_pair(at)) {
+    joined.emplace_back(at.terms.back(), std::move(result_.parameter_rivals.back()));
+    result_.parameter_rivals.pop_back();
+    if (at.free_parameters() > 0) decide(at);
+  }
+  for (auto& [one, two] : joined) {
+    const auto place = std::ranges::find(at.terms, place_of(one), place_of);
+    if (place == at.terms.end()) continue;
+    two.of = size_t(place - at.terms.begin());
+    result_.parameter_rivals.push_back(std::move(two));
+  }
+}
+
+bool SimplerAnswers::join_any_pair(SiteHypothesis& at) {
   constexpr size_t fewest = 3;  // one term in the place of two alone was tried first of all
-  if (at.terms.size() < fewest) return false;
+  if (at.terms.size() < fewest || described(model(), at) == not_joined_) return false;
   for (size_t first = 0; first < at.terms.size(); ++first)
     for (size_t second = first + 1; second < at.terms.size(); ++second)
       if (!is_spent(criteria::work_with_rivals) && join_pair(at, first, second)) return true;
+  not_joined_ = described(model(), at);
   return false;
 }
 
@@ -125,29 +144,37 @@ bool SimplerAnswers::join_pair(SiteHypothesis& at, size_t first, size_t second) 
 
 void SimplerAnswers::compare_with_sensors(SiteHypothesis& at) {
   if (size_of(at) == 0 || is_spent(criteria::work_with_rivals)) return;
-  if (const std::string changes = described(model(), at); changes != asked_beside_)
-    asked_beside_ = changes, of_sensors_ = with_error_of_one_sensor(fitter_, at, {&result_.nominal, 1}),
-    beside_sensors_ = with_error_of_one_sensor(fitter_, at, changes_alone(at));
-  if (!compare_with_sensors(at, of_sensors_)) compare_with_sensors(at, beside_sensors_);
-}
-
-bool SimplerAnswers::compare_with_sensors(SiteHypothesis& at, const std::vector<SiteHypothesis>& others) {
-  for (const SiteHypothesis& other : others) {
-    if (are_same_changes(other, at)) continue;
+  if (const std::string changes = described(model(), at); changes != asked_beside_) {
+    std::vector<SiteHypothesis> bases = changes_alone(at);
+    bases.insert(bases.begin(), result_.nominal);
+    asked_beside_ = changes, of_sensors_ = with_error_of_one_sensor(fitter_, at, bases, gain_needed());
+    for (const SiteHypothesis& other : of_sensors_)
+      tell("in the place of all: " + described(model(), other), other);
+  }
+  const auto may_be_taken = [&](const SiteHypothesis& other) {
+    const double lost = other.objective - at.objective;
+    const bool is_as_good =
+        size_of(other) < size_of(at) ? lost < rival_within : size_of(other) == size_of(at) && lost < 0;
+    return is_as_good && !are_same_changes(other, at) &&
+           whole_criterion(other) < whole_criterion(at) - least_exchange;
+  };
+  const SiteHypothesis* best = nullptr;
+  for (const SiteHypothesis& other : of_sensors_)
+    if (may_be_taken(other) && (!best || whole_criterion(other) < whole_criterion(*best))) best = &other;
+  if (best && looks_everywhere()) {
+    const SiteHypothesis before = at;
+    take(at, *best, "a single sensor does as well");
+    result_.steps.clear();
+    remove_idle(at);
+    asked_beside_ = described(model(), at);  // they stand beside this answer as well
+    result_.parameter_rivals.push_back(as_rival(before, whole_criterion(before) - whole_criterion(at)));
+  }
+  for (const SiteHypothesis& other : of_sensors_) {
     const double worse = whole_criterion(other) - whole_criterion(at), lost = other.objective - at.objective;
-    tell("in the place of all: " + described(model(), other), other);
-    if (size_of(other) < size_of(at) && worse < -least_exchange && lost < rival_within &&
-        looks_everywhere()) {
-      ParameterRival before = as_rival(at, -worse);
-      take(at, other, "a single sensor does as well");
-      result_.steps.clear();
-      result_.parameter_rivals.push_back(std::move(before));
-      return true;
-    }
-    if (worse < rival_within || (size_of(other) <= size_of(at) && lost < rival_within))
+    const bool is_as_good = worse < rival_within || (size_of(other) <= size_of(at) && lost < rival_within);
+    if (is_as_good && !are_same_changes(other, at))
       result_.parameter_rivals.push_back(as_rival(other, worse));
   }
-  return false;
 }
 
 std::vector<SiteHypothesis> SimplerAnswers::changes_alone(const SiteHypothesis& at) {

@@ -1,6 +1,7 @@
 /// Answers of few numbers beside which a set that was found has to stand: a single parameter, an error of a
 /// single sensor.
 #pragma once
+#include <functional>
 #include <string>
 #include <vector>
 #include "tools/diagnose/search/judged_fits.h"
@@ -19,8 +20,8 @@ class SimplerAnswers : protected JudgedFits {
   /// Terms and parameters that do what a single parameter does are that parameter.
   void compare_with_one_parameter(SiteHypothesis& at);
   /// A single term in the place of two of several: a constant at a coupling and one at a sum that it feeds
-  /// are the constant of the other sum. The two are declared. Whether there was one.
-  bool join_terms(SiteHypothesis& at);
+  /// are the constant of the other sum. The two are declared. `decide`: which parameters moved then.
+  void join_terms(SiteHypothesis& at, const std::function<void(SiteHypothesis&)>& decide);
   /// Sensors are not looked at unless the experiment says so, but what one that is off does is no constant of
   /// the machine.
   void declare_offsets_of_sensors(const SiteHypothesis& at);
@@ -32,15 +33,15 @@ class SimplerAnswers : protected JudgedFits {
   std::vector<bool> exchanged_beside_;  ///< the parameters that were free when terms were exchanged
 
  private:
+  bool join_any_pair(SiteHypothesis& at);
   bool join_pair(SiteHypothesis& at, size_t first, size_t second);
-  /// Whether one of the others is the answer now.
-  bool compare_with_sensors(SiteHypothesis& at, const std::vector<SiteHypothesis>& others);
   /// The diagram with a single one of several changes, for each of them.
   std::vector<SiteHypothesis> changes_alone(const SiteHypothesis& at);
   bool looks_everywhere();
 
-  std::vector<SiteHypothesis> of_sensors_, beside_sensors_;  ///< see with_error_of_one_sensor()
-  std::string asked_beside_;                                 ///< the changes in whose place they stand
+  std::vector<SiteHypothesis> of_sensors_;  ///< see with_error_of_one_sensor()
+  std::string asked_beside_;                ///< the changes in whose place they stand
+  std::string not_joined_;                  ///< changes of which no pair is one
 };
 
 }  // namespace loopwright::diagnosis

@@ -113,8 +113,7 @@ class SiteSearch : SimplerAnswers {
     if (remove_idle(at)) decide_parameters(at);
     if (leave_out_detail(at)) decide_parameters(at);
     for (int left = most_changes;; --left) {
-      while (join_terms(at))
-        if (at.free_parameters() > 0) decide_again(at);
+      join_terms(at, [&](SiteHypothesis& h) { decide_again(h); });
       compare_levels(at);
       compare_with_parameters_of_same_response(at);
       compare_with_stated_parameters(at);

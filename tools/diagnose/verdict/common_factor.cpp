@@ -80,9 +80,14 @@ void tell_common_factor(const Trials& trials, const std::vector<InverseDynamics>
          mass.value);
   } else if (!has_others && input.is_moved && is_damped && !mass.is_moved && !damping.is_moved) {
     declare(result, {"force_gain"}, {"inertia", "viscous_friction"});
+    constexpr double least_of_unit = 0.2;  // off by less, no unit is another one
+    const bool may_be_unit = std::abs(input.value - 1) > least_of_unit;
     tell(fmt::format("the input acts {:.4g} times as strongly as stated", input.value),
-         "the same law of motion has it as stated, and mass, damping and all else that is named {:.4g} "
-         "times as large: see its unit, and the gain between input and force",
+         may_be_unit
+             ? "the same law of motion has it as stated, and mass, damping and all else that is named "
+               "{:.4g} times as large: see its unit, and the gain between input and force"
+             : "the same law of motion has it as stated, and mass, damping and all else that is named "
+               "{:.4g} times as large: see the gain between input and force, and the scale of the sensor",
          input.value);
   }
 }

@@ -5,7 +5,7 @@
 
 namespace loopwright::diagnosis {
 
-void tell_sensors_not_looked_at(const SiteModel& model, const SiteHypothesis& found, Diagnosis& result) {
+void tell_sensors_not_looked_at(SiteModel& model, const SiteHypothesis& found, Diagnosis& result) {
   std::vector<std::string> sensors;
   for (size_t i = 0; i < model.sites().size(); ++i) {
     const Site& site = model.sites()[i];
@@ -14,7 +14,8 @@ void tell_sensors_not_looked_at(const SiteModel& model, const SiteHypothesis& fo
   }
   if (sensors.empty()) return;
   result.not_looked_for.push_back(
-      {{fmt::format("errors of the sensors of {} beside several changes", loopwright::joined(sensors, ", "))},
+      {{fmt::format("errors of the sensors of {}{}", loopwright::joined(sensors, ", "),
+                    model.work().was_short() ? "" : " beside several changes")},
        fmt::format(
            "what was found may in part stand for an offset of one; \"sites\" of the experiment may name "
            "them, as \"{} (sensor)\"",

@@ -6,6 +6,6 @@
 namespace loopwright::diagnosis {
 
 /// An offset of a sensor bends what is found beside it. One beside a single change was asked for.
-void tell_sensors_not_looked_at(const SiteModel& model, const SiteHypothesis& found, Diagnosis& result);
+void tell_sensors_not_looked_at(SiteModel& model, const SiteHypothesis& found, Diagnosis& result);
 
 }  // namespace loopwright::diagnosis

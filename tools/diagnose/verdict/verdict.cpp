@@ -122,6 +122,13 @@ bool is_made_by_counts(const Trials& trials, const Conclusion& conclusion, const
          left * left - floor * floor < std::pow(criteria::least_excess * trials.force_rms, 2);
 }
 
+double longest_record_s(const Trials& trials) {
+  double longest = 0;
+  for (const Trial& trial : trials.list)
+    longest = std::max(longest, double(trial.usable.size()) * trial.model->record().sample_time);
+  return longest;
+}
+
 /// In noise that is no smaller than what drives, a name for a part of it explains nothing by itself: the
 /// diagram must simulate better with it.
 std::string lost_in_noise(const Trials& trials, const Estimate& e, const Diagnosis& diagnosis) {
@@ -168,7 +175,7 @@ void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, c
                           lost_in_noise(trials, e, diagnosis)})
     if (!why.empty()) diagnosis.contradictions.push_back(std::move(why));
   for (const DiagnosedEffect& effect : diagnosis.effects)
-    if (std::string why = why_not_determined(effect); !why.empty())
+    if (std::string why = why_not_determined(effect, longest_record_s(trials)); !why.empty())
       diagnosis.contradictions.push_back(std::move(why));
   if (diagnosis.simulation_diverged)
     diagnosis.contradictions.push_back("the diagram with these effects diverges when it is simulated");
