@@ -33,7 +33,8 @@ TEST(EffectRun, GivesEachSetOfAFormulaItsOwnParameters) {
               R"json({"loopwright": 1, "effect": "bend", "title": "A bend", "physics": "A formula.",
     "parameters": {"loss": {"description": "Share", "unit": "1", "linear": true, "range": [0, 2], "start": 1},
                    "limit": {"description": "Limit", "unit": "$input", "scale": "logarithmic", "range": [0.3, 10], "start": 2}},
-    "blocks": {"motor": {"type": "Expression", "formula": "u - loss*(u - limit*tanh(u/limit))", "names": ["u"],
+    "blocks": {"motor": {"type": "Expression", "formula": "u - loss*(u - limit*tanh(u/limit))*two*stroke/(2*stroke)", "names": ["u"],
+                         "constants": [{"name": "two", "value": 2}],
                          "in": {"arguments": ["input"]}}},
     "attach": [{"to": "input", "from": "motor.y"}], "needs": {"text": "motion"}})json");
   Problems problems;

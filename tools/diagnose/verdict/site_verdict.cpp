@@ -1,4 +1,3 @@
-#include "tools/diagnose/verdict/sensors_not_looked_at.h"
 #include "tools/diagnose/verdict/site_verdict.h"
 #include <fmt/format.h>
 #include <algorithm>
@@ -8,6 +7,7 @@
 #include "tools/diagnose/search/site_disturbance.h"
 #include "tools/diagnose/search/site_size.h"
 #include "tools/diagnose/search/stacked_names.h"
+#include "tools/diagnose/verdict/sensors_not_looked_at.h"
 #include "tools/diagnose/verdict/site_opinion_text.h"
 #include "tools/diagnose/wording.h"
 #include "tools/diagnose/verdict/alike_sites.h"
