@@ -19,6 +19,10 @@ double value_of(const DiagnosedEffect& effect, const std::string& name) {
     if (p.name == name) return p.value;
   return std::nan("");
 }
+void expect_explained_by(const Diagnosis& d, const char* effect) {
+  EXPECT_EQ(d.verdict, Verdict::explained) << to_text(d);
+  ASSERT_THAT(names(d), ElementsAre(effect)) << to_text(d);
+}
 WantedMotion brisk() { return there_and_back(0.2, 0.6).stroke(0.2, 0.5, 0.08).stroke(-0.2, 0.5, 0.08); }
 
 TEST(Drive, AnAmplifierThatLimitsItsCurrentIsNamedWithItsLimit) {
@@ -27,8 +31,7 @@ TEST(Drive, AnAmplifierThatLimitsItsCurrentIsNamedWithItsLimit) {
   machine.drive = [](double command, double) { return std::clamp(command, -1.5, 1.5); };
   HiddenAxis axis(machine);
   const Diagnosis d = diagnosed(axis, brisk());
-  EXPECT_EQ(d.verdict, Verdict::explained) << to_text(d);
-  ASSERT_THAT(names(d), ElementsAre("force_saturation")) << to_text(d);
+  ASSERT_NO_FATAL_FAILURE(expect_explained_by(d, "force_saturation"));
   EXPECT_EQ(d.effects[0].form, "amplifier");
   EXPECT_NEAR(value_of(d.effects[0], "limit"), 1.5, 0.02);
   EXPECT_NEAR(value_of(d.effects[0], "loss"), 1, 0.02);
@@ -41,8 +44,7 @@ TEST(Drive, AMotorThatSaturatesSoftlyIsNamedWithItsLimit) {
   machine.drive = [](double command, double) { return 4 * std::tanh(command / 4); };
   HiddenAxis axis(machine);
   const Diagnosis d = diagnosed(axis, brisk());
-  EXPECT_EQ(d.verdict, Verdict::explained) << to_text(d);
-  ASSERT_THAT(names(d), ElementsAre("force_saturation")) << to_text(d);
+  ASSERT_NO_FATAL_FAILURE(expect_explained_by(d, "force_saturation"));
   EXPECT_EQ(d.effects[0].form, "soft");
   EXPECT_NEAR(value_of(d.effects[0], "limit"), 4, 0.4);
 }
@@ -54,8 +56,7 @@ TEST(Drive, APositionSensorThatIsNotLinearIsNamed) {
   machine.sensor = [](double x) { return x + 0.3 * (x - 0.1) * (x - 0.1); };  // 3 mm at the ends of 0.2 m
   HiddenAxis axis(machine);
   const Diagnosis d = diagnosed(axis, there_and_back(0.2, 0.6));
-  EXPECT_EQ(d.verdict, Verdict::explained) << to_text(d);
-  ASSERT_THAT(names(d), ElementsAre("sensor_nonlinearity")) << to_text(d);
+  ASSERT_NO_FATAL_FAILURE(expect_explained_by(d, "sensor_nonlinearity"));
   EXPECT_NEAR(value_of(d.effects[0], "curvature"), 0.3, 0.009) << to_text(d);
 }
 
@@ -66,8 +67,7 @@ TEST(Drive, ADeadBandOfAnAmplifierIsNamedWithItsWidth) {
   };
   HiddenAxis axis(machine);
   const Diagnosis d = diagnosed(axis, brisk());
-  EXPECT_EQ(d.verdict, Verdict::explained) << to_text(d);
-  ASSERT_THAT(names(d), ElementsAre("dead_band")) << to_text(d);
+  ASSERT_NO_FATAL_FAILURE(expect_explained_by(d, "dead_band"));
   EXPECT_NEAR(value_of(d.effects[0], "width"), 0.1, 0.005);
 }
 
@@ -80,8 +80,7 @@ TEST(Drive, AGainThatDiffersWithTheSignOfTheCommandIsNamed) {
   DiagnoseOptions options;
   options.improved_diagram = axis.file("improved.json");
   const Diagnosis d = diagnose(axis.diagram(), {experiment}, options);
-  EXPECT_EQ(d.verdict, Verdict::explained) << to_text(d);
-  ASSERT_THAT(names(d), ElementsAre("asymmetric_gain")) << to_text(d);
+  ASSERT_NO_FATAL_FAILURE(expect_explained_by(d, "asymmetric_gain"));
   EXPECT_NEAR(value_of(d.effects[0], "asymmetry"), 0.05, 0.003);
   const Diagnosis after =
       diagnose(d.improved, d.improved_experiments.empty() ? std::vector{experiment} : d.improved_experiments);

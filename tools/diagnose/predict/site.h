@@ -28,6 +28,8 @@ struct Site {
   std::optional<Unit> unit;
   Quantity quantity = Quantity::other;
   bool is_searched = true;  ///< the experiment may limit the search
+
+  bool is_sensor_not_looked_at() const { return kind == Kind::sensor && !is_searched; }
 };
 
 /// The diagram with a block at every site, whose output is added there. The blocks are ExternalSignals of

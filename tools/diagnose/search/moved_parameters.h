@@ -13,12 +13,7 @@ struct MovedParameters {
   double criterion = 0;
   std::vector<double> standard_errors = {};  ///< of those that moved, [of the parameter]
 
-  std::vector<int> moved() const {
-    std::vector<int> list;
-    for (size_t i = 0; i < hypothesis.is_free.size(); ++i)
-      if (hypothesis.is_free[i]) list.push_back(int(i));
-    return list;
-  }
+  std::vector<int> moved() const { return hypothesis.moved(); }
 };
 
 /// Sets of moved parameters by their criterion, best first, each fitted with its own noise. Sets are chosen

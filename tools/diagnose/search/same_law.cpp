@@ -28,9 +28,6 @@ void fit(SiteFitter& fitter, SiteHypothesis& h) {
   fitter.refine(h, 3);
 }
 
-bool is_sensor_not_looked_at(const Site& site) {
-  return site.kind == Site::Kind::sensor && !site.is_searched;
-}
 SiteTerm offset_of_sensor(SiteFitter& fitter, int site, const SiteNoise& noise) {
   const int output = fitter.model().output_of_sensor(site);
   return plain_term(fitter, "constant", site, -1, noise.measurement[size_t(output)]);
@@ -47,7 +44,7 @@ std::vector<std::vector<SiteTerm>> errors_of_sensors(SiteFitter& fitter, const S
   const SiteModel& model = fitter.model();
   std::vector<std::vector<SiteTerm>> list;
   for (int site = 0; site < int(model.sites().size()); ++site) {
-    if (!is_sensor_not_looked_at(model.sites()[size_t(site)]) || has_term_at(at, site)) continue;
+    if (!model.sites()[size_t(site)].is_sensor_not_looked_at() || has_term_at(at, site)) continue;
     const SiteTerm offset = offset_of_sensor(fitter, site, at.noise),
                    scale =
                        plain_term(fitter, "linear", site, model.own_variable(site), notable_error_of_scale);
@@ -119,7 +116,7 @@ std::vector<OffsetOfSensor> offsets_of_sensors(SiteFitter& fitter, const SiteHyp
   for (size_t t = 0; t < at.terms.size(); ++t) {
     if (at.terms[t].shape->of != TermShape::Of::nothing) continue;
     for (size_t site = 0; site < model.sites().size(); ++site) {
-      if (!is_sensor_not_looked_at(model.sites()[site]) || has_term_at(at, int(site))) continue;
+      if (!model.sites()[site].is_sensor_not_looked_at() || has_term_at(at, int(site))) continue;
       SiteHypothesis other = without(at, t);
       std::ranges::fill(other.factors, 1.0);
       other.is_free.assign(other.is_free.size(), false);

@@ -1,4 +1,6 @@
 #include "tools/diagnose/search/simpler_answers.h"
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <algorithm>
 #include <tuple>
 #include "tools/diagnose/criteria.h"
@@ -12,15 +14,6 @@ namespace {
 
 using criteria::least_exchange, criteria::rival_within;
 
-std::string described(const SiteModel& model, const SiteHypothesis& h) {
-  std::string text;
-  const auto add = [&](const std::string& name) { text += (text.empty() ? "" : " + ") + name; };
-  for (size_t i = 0; i < h.is_free.size(); ++i)
-    if (h.is_free[i]) add(model.parameters()[i].name);
-  for (const SiteTerm& term : h.terms) add(describe(model, term));
-  return text;
-}
-
 std::tuple<const TermShape*, int, int> place_of(const SiteTerm& term) {
   return {term.shape, term.site, term.variable};
 }
@@ -33,10 +26,7 @@ bool are_same_changes(const SiteHypothesis& one, const SiteHypothesis& other) {
 
 /// In the place of all that was found.
 ParameterRival as_rival(const SiteHypothesis& h, double worse) {
-  ParameterRival rival{{}, h.terms, worse, {}, true};
-  for (size_t i = 0; i < h.is_free.size(); ++i)
-    if (h.is_free[i]) rival.moved.push_back(int(i));
-  return rival;
+  return {h.moved(), h.terms, worse, {}, true};
 }
 
 }  // namespace
@@ -80,7 +70,7 @@ void SimplerAnswers::declare_offsets_of_sensors(const SiteHypothesis& at) {
 }
 
 void SimplerAnswers::compare_with_one_parameter(SiteHypothesis& at) {
-  const size_t changes = at.terms.size() + at.free_parameters();
+  const size_t changes = at.changes();
   if (changes == 0) return;
   for (const SiteHypothesis& one : single_) {
     const int moved = moved_parameter(one);
@@ -99,9 +89,8 @@ void SimplerAnswers::compare_with_one_parameter(SiteHypothesis& at) {
 
 void SimplerAnswers::join_terms(SiteHypothesis& at, const std::function<void(SiteHypothesis&)>& decide) {
   std::vector<std::pair<SiteTerm, ParameterRival>> joined;
-  while (join_any_pair(at)) {
-    joined.emplace_back(at.terms.back(), std::move(result_.parameter_rivals.back()));
-    result_.parameter_rivals.pop_back();
+  while (const std::optional<ParameterRival> two = join_any_pair(at)) {
+    joined.emplace_back(at.terms.back(), *two);
     if (at.free_parameters() > 0) decide(at);
   }
   for (auto& [one, two] : joined) {
@@ -112,17 +101,19 @@ void SimplerAnswers::join_terms(SiteHypothesis& at, const std::function<void(Sit
   }
 }
 
-bool SimplerAnswers::join_any_pair(SiteHypothesis& at) {
+std::optional<ParameterRival> SimplerAnswers::join_any_pair(SiteHypothesis& at) {
   constexpr size_t fewest = 3;  // one term in the place of two alone was tried first of all
-  if (at.terms.size() < fewest || described(model(), at) == not_joined_) return false;
+  if (at.terms.size() < fewest || named_in(model(), at) == not_joined_) return {};
   for (size_t first = 0; first < at.terms.size(); ++first)
-    for (size_t second = first + 1; second < at.terms.size(); ++second)
-      if (!is_spent(criteria::work_with_rivals) && join_pair(at, first, second)) return true;
-  not_joined_ = described(model(), at);
-  return false;
+    for (size_t second = first + 1; second < at.terms.size(); ++second) {
+      if (is_spent(criteria::work_with_rivals)) break;
+      if (const auto two = join_pair(at, first, second)) return two;
+    }
+  not_joined_ = named_in(model(), at);
+  return {};
 }
 
-bool SimplerAnswers::join_pair(SiteHypothesis& at, size_t first, size_t second) {
+std::optional<ParameterRival> SimplerAnswers::join_pair(SiteHypothesis& at, size_t first, size_t second) {
   constexpr size_t most_tried = 2;
   const SiteHypothesis rest = without(without(at, second), first);
   const std::vector<SiteCandidate> ranked = rank_terms(fitter_, rest, fitter_.shapes());
@@ -133,23 +124,23 @@ bool SimplerAnswers::join_pair(SiteHypothesis& at, size_t first, size_t second) 
          other);
     if (size_of(other) >= size_of(at) || worse >= 0 || other.objective - at.objective >= rival_within)
       continue;
-    ParameterRival both{{}, {at.terms[first], at.terms[second]}, -worse, other.terms.size() - 1};
-    both.keeps_parameters = true;
+    ParameterRival two{{}, {at.terms[first], at.terms[second]}, -worse};
+    two.keeps_parameters = true;
     take(at, other, "one term does as well as two");
-    result_.parameter_rivals.push_back(std::move(both));
-    return true;
+    return two;
   }
-  return false;
+  return {};
 }
 
 void SimplerAnswers::compare_with_sensors(SiteHypothesis& at) {
   if (size_of(at) == 0 || is_spent(criteria::work_with_rivals)) return;
-  if (const std::string changes = described(model(), at); changes != asked_beside_) {
+  if (std::vector<std::string> changes = named_in(model(), at); changes != asked_beside_) {
     std::vector<SiteHypothesis> bases = changes_alone(at);
     bases.insert(bases.begin(), result_.nominal);
-    asked_beside_ = changes, of_sensors_ = with_error_of_one_sensor(fitter_, at, bases, gain_needed());
+    asked_beside_ = std::move(changes);
+    of_sensors_ = with_error_of_one_sensor(fitter_, at, bases, gain_needed());
     for (const SiteHypothesis& other : of_sensors_)
-      tell("in the place of all: " + described(model(), other), other);
+      tell(fmt::format("in the place of all: {}", fmt::join(named_in(model(), other), " + ")), other);
   }
   const auto may_be_taken = [&](const SiteHypothesis& other) {
     const double lost = other.objective - at.objective;
@@ -166,7 +157,7 @@ void SimplerAnswers::compare_with_sensors(SiteHypothesis& at) {
     take(at, *best, "a single sensor does as well");
     result_.steps.clear();
     remove_idle(at);
-    asked_beside_ = described(model(), at);  // they stand beside this answer as well
+    asked_beside_ = named_in(model(), at);  // they stand beside this answer as well
     result_.parameter_rivals.push_back(as_rival(before, whole_criterion(before) - whole_criterion(at)));
   }
   for (const SiteHypothesis& other : of_sensors_) {
@@ -180,16 +171,14 @@ void SimplerAnswers::compare_with_sensors(SiteHypothesis& at) {
 std::vector<SiteHypothesis> SimplerAnswers::changes_alone(const SiteHypothesis& at) {
   constexpr size_t fewest = 2, most = 5;  // of one, nothing would be left; of more, hardly one is right
   std::vector<SiteHypothesis> list;
-  const size_t changes = at.terms.size() + at.free_parameters();
-  if (changes < fewest || changes > most) return list;
+  if (at.changes() < fewest || at.changes() > most) return list;
   for (const SiteTerm& term : at.terms) {
     list.push_back(result_.nominal);
     list.back().terms = {term};
   }
-  for (size_t i = 0; i < at.is_free.size(); ++i) {
-    if (!at.is_free[i]) continue;
+  for (const int i : at.moved()) {
     list.push_back(result_.nominal);
-    list.back().is_free[i] = true, list.back().factors[i] = at.factors[i];
+    list.back().is_free[size_t(i)] = true, list.back().factors[size_t(i)] = at.factors[size_t(i)];
   }
   return list;
 }

@@ -2,6 +2,7 @@
 /// single sensor.
 #pragma once
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 #include "tools/diagnose/search/judged_fits.h"
@@ -33,15 +34,16 @@ class SimplerAnswers : protected JudgedFits {
   std::vector<bool> exchanged_beside_;  ///< the parameters that were free when terms were exchanged
 
  private:
-  bool join_any_pair(SiteHypothesis& at);
-  bool join_pair(SiteHypothesis& at, size_t first, size_t second);
+  /// The two in whose place one stands now, without the number of that one.
+  std::optional<ParameterRival> join_any_pair(SiteHypothesis& at);
+  std::optional<ParameterRival> join_pair(SiteHypothesis& at, size_t first, size_t second);
   /// The diagram with a single one of several changes, for each of them.
   std::vector<SiteHypothesis> changes_alone(const SiteHypothesis& at);
   bool looks_everywhere();
 
   std::vector<SiteHypothesis> of_sensors_;  ///< see with_error_of_one_sensor()
-  std::string asked_beside_;                ///< the changes in whose place they stand
-  std::string not_joined_;                  ///< changes of which no pair is one
+  std::vector<std::string> asked_beside_;   ///< the changes in whose place they stand
+  std::vector<std::string> not_joined_;     ///< changes of which no pair is one
 };
 
 }  // namespace loopwright::diagnosis

@@ -18,6 +18,14 @@ struct SiteHypothesis {
   double scaled_objective = 0;  ///< the same with the best common scale of the noise
 
   size_t free_parameters() const { return size_t(std::count(is_free.begin(), is_free.end(), true)); }
+  size_t changes() const { return terms.size() + free_parameters(); }
+  /// Which parameters are fitted, by their numbers.
+  std::vector<int> moved() const {
+    std::vector<int> list;
+    for (size_t i = 0; i < is_free.size(); ++i)
+      if (is_free[i]) list.push_back(int(i));
+    return list;
+  }
 };
 
 /// The hypothesis without one of its terms, not fitted again.

@@ -56,21 +56,11 @@ bool is_clearly_better(const SimulationErrors& simulation, const SimulationError
          (!has_held_out || log_ratio(simulation.held_out, predictions.held_out) < needed);
 }
 
-size_t changes_of(const SiteHypothesis& h) { return h.terms.size() + h.free_parameters(); }
-
 /// A simulation that misses more than one of the diagram as it is names no cause.
 bool is_worse_than_stated(SiteFitter& fitter, const SimulationErrors& simulation,
                           const SiteHypothesis& nominal) {
   const auto of_nominal = simulation_errors(fitter, nominal);
   return of_nominal && log_ratio(simulation.judged(), of_nominal->judged()) > 0;
-}
-
-std::vector<std::string> named_in(const SiteModel& model, const SiteHypothesis& h) {
-  std::vector<std::string> list;
-  for (const SiteTerm& term : h.terms) list.push_back(describe(model, term));
-  for (size_t i = 0; i < h.is_free.size(); ++i)
-    if (h.is_free[i]) list.push_back(model.parameters()[i].name);
-  return list;
 }
 
 /// The other search agrees if it names the same, or the same and more that does not help its simulation.
@@ -182,7 +172,7 @@ std::optional<SiteSearchResult> search_with_second_opinion(
   if (!second || fitter.is_interrupted()) return first;
   const auto of_first = simulation_errors(fitter, first->found),
              of_second = simulation_errors(fitter, second->found);
-  const size_t changes = changes_of(first->found), more = changes_of(second->found);
+  const size_t changes = first->found.changes(), more = second->found.changes();
   const bool is_better =
       of_second && !is_worse_than_stated(fitter, *of_second, first->nominal) &&
       (!of_first || is_clearly_better(*of_second, *of_first, more - std::min(more, changes)));

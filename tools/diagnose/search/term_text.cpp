@@ -9,4 +9,11 @@ std::string describe(const SiteModel& model, const SiteTerm& term) {
   return text;
 }
 
+std::vector<std::string> named_in(const SiteModel& model, const SiteHypothesis& h) {
+  std::vector<std::string> list;
+  for (const SiteTerm& term : h.terms) list.push_back(describe(model, term));
+  for (const int i : h.moved()) list.push_back(model.parameters()[size_t(i)].name);
+  return list;
+}
+
 }  // namespace loopwright::diagnosis

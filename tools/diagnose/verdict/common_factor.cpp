@@ -82,12 +82,13 @@ void tell_common_factor(const Trials& trials, const std::vector<InverseDynamics>
     declare(result, {"force_gain"}, {"inertia", "viscous_friction"});
     constexpr double least_of_unit = 0.2;  // off by less, no unit is another one
     const bool may_be_unit = std::abs(input.value - 1) > least_of_unit;
+    const std::string same_law =
+        "the same law of motion has it as stated, and mass, damping and all else that is named {:.4g} times "
+        "as "
+        "large: see ";
     tell(fmt::format("the input acts {:.4g} times as strongly as stated", input.value),
-         may_be_unit
-             ? "the same law of motion has it as stated, and mass, damping and all else that is named "
-               "{:.4g} times as large: see its unit, and the gain between input and force"
-             : "the same law of motion has it as stated, and mass, damping and all else that is named "
-               "{:.4g} times as large: see the gain between input and force, and the scale of the sensor",
+         same_law + (may_be_unit ? "its unit, and the gain between input and force"
+                                 : "the gain between input and force, and the scale of the sensor"),
          input.value);
   }
 }

@@ -10,7 +10,7 @@ void tell_sensors_not_looked_at(SiteModel& model, const SiteHypothesis& found, D
   for (size_t i = 0; i < model.sites().size(); ++i) {
     const Site& site = model.sites()[i];
     const bool is_found = std::ranges::find(found.terms, int(i), &SiteTerm::site) != found.terms.end();
-    if (site.kind == Site::Kind::sensor && !site.is_searched && !is_found) sensors.push_back(site.own_signal);
+    if (site.is_sensor_not_looked_at() && !is_found) sensors.push_back(site.own_signal);
   }
   if (sensors.empty()) return;
   result.not_looked_for.push_back(
