@@ -18,7 +18,7 @@ struct Expression {
   std::string formula;
   std::vector<std::string> names;
   std::vector<NamedNumber> constants;
-  mutable Formula compiled;  // belongs to one run: muParser has its own evaluation stack
+  mutable Formula compiled;  // belongs to one run: it has its own evaluation stack
   struct In {
     Many<double> arguments;
   };
@@ -105,12 +105,15 @@ struct Expression {
     return result;
   }
   void prepare(double) {
-    compiled.compile(formula, all_names());
-    for (size_t i = 0; i < constants.size(); ++i) compiled.variables[names.size() + i] = constants[i].value;
+    if (!compiled.steps)
+      compiled.compile(formula, all_names()), compiled.compute_in_steps(formula, all_names());
+    for (size_t i = 0; i < constants.size(); ++i) compiled.arguments()[names.size() + i] = constants[i].value;
+    compiled.keep_constant_from(names.size());
   }
   Fault outputs(const In& in, Out& out) const {
-    for (int i = 0; i < in.arguments.size(); ++i) compiled.variables[size_t(i)] = in.arguments[i];
-    out.y = compiled.parser.Eval();
+    double* const arguments = compiled.arguments().data();
+    for (int i = 0; i < in.arguments.size(); ++i) arguments[i] = in.arguments[i];
+    out.y = compiled.value();
     return fault_if(!std::isfinite(out.y), "the formula gave a non-finite number");
   }
 };

@@ -2,6 +2,7 @@
 #pragma once
 #include "engine/block.h"
 #include "engine/diagram/formula_parser.h"
+#include "engine/diagram/formula_steps.h"
 
 namespace loopwright::blocks {
 
@@ -10,6 +11,7 @@ namespace loopwright::blocks {
 struct Formula {
   FormulaParser parser;
   std::vector<double> variables;
+  std::optional<FormulaSteps> steps;  ///< the same, several times faster, after compute_in_steps
   Formula() = default;
   Formula(const Formula&) {}
   Formula& operator=(const Formula&) { return *this; }
@@ -28,7 +30,19 @@ struct Formula {
     for (size_t i = 0; i < names.size(); ++i) parser.DefineVar(std::string(names[i]), &variables[i]);
     parser.set_formula(text);
     parser.Eval();  // compiles the formula, so that later calls do not allocate
+    steps.reset();
   }
+  /// Of a compiled formula.
+  void compute_in_steps(const std::string& text, const std::vector<std::string_view>& names) {
+    steps = FormulaSteps::of(text, names);
+  }
+  /// From this variable on they stay as they are.
+  void keep_constant_from(size_t first) {
+    if (steps) steps->keep_constant_from(first);
+  }
+  /// Where the values of the variables are written.
+  std::span<double> arguments() { return steps ? steps->variables() : std::span(variables); }
+  double value() { return steps ? steps->value() : parser.Eval(); }
 };
 
 /// A parameter of the diagram that a formula names.
