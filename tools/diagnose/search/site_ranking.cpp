@@ -49,36 +49,52 @@ class Ranking {
   }
 
   std::vector<SiteCandidate> run(std::span<const TermShape> shapes) {
-    std::vector<SiteCandidate> list;
-    if (!is_good_) return list;
+    if (!is_good_) return {};
     const SiteModel& model = fitter_.model();
-    for (int site = 0; site < int(model.sites().size()); ++site) {
-      if (!model.sites()[size_t(site)].is_searched || !acts(site)) continue;
-      has_constant_ = false;
-      for (const TermShape& shape : shapes) {
-        if (shape.of == TermShape::Of::nothing && (!is_distorted(site) || is_sensor(site)))
-          rank(shape, site, -1, list);
-        else if (shape.of == TermShape::Of::own)
-          try_distortion(shape, site, list);
-        else if (shape.of == TermShape::Of::past && model.input_of(site) >= 0)
-          try_past(shape, site, list);
-        else if (shape.of == TermShape::Of::signal)
-          for (int v = 0; v < int(model.variables().size()); ++v)
-            if (is_admissible(shape, site, v)) rank(shape, site, v, list);
-      }
+    constants_.resize(model.sites().size());
+    Lists lists(model.sites().size());
+    std::vector<int> acting;
+    for (int site = 0; site < int(model.sites().size()); ++site)
+      if (model.sites()[size_t(site)].is_searched && acts(site)) acting.push_back(site);
+    const auto those_that = [&](auto&& wanted) {
+      std::vector<int> sites;
+      std::ranges::copy_if(acting, std::back_inserter(sites), wanted);
+      return sites;
+    };
+    for (const TermShape& shape : shapes) {
+      if (shape.of == TermShape::Of::nothing)
+        rank(shape, those_that([&](int s) { return !is_distorted(s) || is_sensor(s); }), -1, lists);
+      else if (shape.of == TermShape::Of::own)
+        for (int site : acting) try_distortion(shape, site, lists[size_t(site)]);
+      else if (shape.of == TermShape::Of::past)
+        for (int site : those_that([&](int s) { return model.input_of(s) >= 0; }))
+          try_past(shape, site, lists[size_t(site)]);
+      else
+        for (int v = 0; v < int(model.variables().size()); ++v)
+          rank(shape, those_that([&](int s) { return is_admissible(shape, s, v); }), v, lists);
     }
+    std::vector<SiteCandidate> list;
+    for (const auto& own : lists) std::ranges::copy(own, std::back_inserter(list));
     std::ranges::sort(list, std::greater{}, [](const SiteCandidate& c) { return c.gain - 2 * c.cost; });
     return list;
   }
 
   std::vector<SiteCandidate> run_at(std::span<const TermShape> shapes, int site, int variable) {
-    std::vector<SiteCandidate> list;
-    if (is_good_)
-      for (const TermShape& shape : shapes) rank(shape, site, variable, list);
-    return list;
+    if (!is_good_) return {};
+    constants_.resize(fitter_.model().sites().size());
+    Lists lists(constants_.size());
+    for (const TermShape& shape : shapes) rank(shape, {site}, variable, lists);
+    return lists[size_t(site)];
   }
 
  private:
+  using Lists = std::vector<std::vector<SiteCandidate>>;  // of the sites
+  struct Constant {
+    SiteTerm term;
+    Eigen::MatrixXd column;
+    double gain = 0;  ///< 0: none is admissible there
+  };
+
   /// An output that is only a multiple of a state, as of a Gain, is no variable of its own.
   void find_multiples() {
     const std::vector<SiteVariable>& variables = fitter_.model().variables();
@@ -143,10 +159,11 @@ class Ranking {
       values[k] = fitter_.model().variables()[size_t(variable)].at(&pass_.path[0][k * pass_.numbers]);
     return values;
   }
-  SiteTerm term_of(const TermShape& shape, int site, int variable, const std::vector<double>& values,
+  /// At any site.
+  SiteTerm term_of(const TermShape& shape, int variable, const std::vector<double>& values,
                    const std::array<double, most_nonlinear>& start) const {
     SiteTerm term;
-    term.shape = &shape, term.site = site, term.variable = variable, term.nonlinear = start;
+    term.shape = &shape, term.variable = variable, term.nonlinear = start;
     const auto [low, high] = std::ranges::minmax(values);
     const double largest = std::max(std::abs(low), std::abs(high));
     const bool is_level = shape.nonlinear[0] == "level" || is_unknown_function(shape);
@@ -163,8 +180,8 @@ class Ranking {
         for (double& number : *list) number *= fitter_.model().record().sample_time;
     return term;
   }
-  /// The responses of the errors to the term's columns, at coefficients of one.
-  Eigen::MatrixXd responses(SiteTerm& term) {
+  /// phi_ and sizes_ of the term's columns, which are the same at every site.
+  void evaluate(const SiteTerm& term) {
     const SiteVariable none;
     const SiteVariable& variable =
         term.variable < 0 ? none : fitter_.model().variables()[size_t(term.variable)];
@@ -180,58 +197,73 @@ class Ranking {
           term.columns(term.variable < 0 ? 0 : variable.at(&pass_.path[part][k * pass_.numbers]), all.data());
         for (size_t c = 0; c < count; ++c) phi_[part][c * rows + k] = all[c], square[c] += all[c] * all[c];
       }
+    for (size_t c = 0; c < count; ++c) sizes_[c] = std::sqrt(square[c] / (3 * double(rows)));
+  }
+  /// The responses of the errors to the evaluated columns at a site, at coefficients of one.
+  Eigen::MatrixXd responses(SiteTerm& term, int site) {
+    term.site = site;
+    const size_t rows = pass_.rows;
     Eigen::MatrixXd columns(Eigen::Index(pass_.error.size()), term.shape->columns);
-    for (size_t c = 0; c < count; ++c) {
-      const double size = std::sqrt(square[c] / (3 * double(rows)));
-      term.unit[c] = size > 0 ? fitter_.filter().site_scale(term.site) / size : 1;
+    for (size_t c = 0; c < size_t(term.shape->columns); ++c) {
+      term.unit[c] = sizes_[c] > 0 ? fitter_.filter().site_scale(site) / sizes_[c] : 1;
       const auto along = [&](size_t part) { return std::span(phi_[part]).subspan(c * rows, rows); };
-      fitter_.filter().respond(pass_, term.site, along(0), along(1), along(2),
+      fitter_.filter().respond(pass_, site, along(0), along(1), along(2),
                                {columns.col(Eigen::Index(c)).data(), pass_.error.size()});
     }
     return columns;
   }
-  void rank(const TermShape& shape, int site, int variable, std::vector<SiteCandidate>& list) {
-    if (is_there(shape, site, variable)) return;
+  struct Best {
+    SiteCandidate one, pair;
+  };
+  void rank(const TermShape& shape, std::vector<int> sites, int variable, Lists& lists) {
+    std::erase_if(sites, [&](int site) { return is_there(shape, site, variable); });
+    if (sites.empty()) return;
     const std::vector<double> values = signal(variable);
     std::vector<std::array<double, most_nonlinear>> starts{{}};
     if (shape.starts) starts = shape.starts(values);
-    SiteCandidate best, best_pair;
+    std::vector<Best> best(sites.size());
     for (const auto& start : starts) {
       if (shape.starts && !(start[0] != 0 || start[1] != 0)) continue;
-      SiteTerm term = term_of(shape, site, variable, values, start);
-      Eigen::MatrixXd columns = responses(term);
-      if (!columns.allFinite()) continue;
-      const Eigen::VectorXd energy = columns.colwise().squaredNorm().transpose();
-      columns -= basis_ * (basis_.transpose() * columns);
-      for (Eigen::Index c = 0; c < columns.cols(); ++c)
-        if (!(columns.col(c).squaredNorm() > least_energy * energy[c])) columns.col(c).setZero();
-      const double gain = explain(columns, term);
-      if (gain > best.gain) best.gain = gain, best.term = term;
-      if (shape.of == TermShape::Of::nothing)
-        constant_ = term, constant_gain_ = gain, constant_column_ = columns, has_constant_ = gain > 0;
-      else if (goes_with_constant(shape))
-        pair(columns, term, std::max(gain, constant_gain_), best_pair);
+      const SiteTerm term = term_of(shape, variable, values, start);
+      evaluate(term);
+      for (size_t s = 0; s < sites.size(); ++s) rank_at(sites[s], term, best[s]);
     }
-    for (SiteCandidate* candidate : {&best, &best_pair}) {
-      if (candidate->gain <= 0) continue;
-      candidate->cost = cost_of(fitter_.model(), candidate->term);
-      if (candidate->constant) candidate->cost += cost_of(fitter_.model(), *candidate->constant);
-      list.push_back(*candidate);
-    }
+    for (size_t s = 0; s < sites.size(); ++s)
+      for (SiteCandidate* candidate : {&best[s].one, &best[s].pair}) {
+        if (candidate->gain <= 0) continue;
+        candidate->cost = cost_of(fitter_.model(), candidate->term);
+        if (candidate->constant) candidate->cost += cost_of(fitter_.model(), *candidate->constant);
+        lists[size_t(sites[s])].push_back(*candidate);
+      }
   }
-  bool goes_with_constant(const TermShape& shape) const {
-    return with_constants_ && has_constant_ &&
-           (is_plain(shape) || shape.name == "absolute" || shape.name == "sign");
+  /// An evaluated term.
+  void rank_at(int site, SiteTerm term, Best& best) {
+    Eigen::MatrixXd columns = responses(term, site);
+    if (!columns.allFinite()) return;
+    const Eigen::VectorXd energy = columns.colwise().squaredNorm().transpose();
+    columns -= basis_ * (basis_.transpose() * columns);
+    for (Eigen::Index c = 0; c < columns.cols(); ++c)
+      if (!(columns.col(c).squaredNorm() > least_energy * energy[c])) columns.col(c).setZero();
+    const double gain = explain(columns, term);
+    if (gain > best.one.gain) best.one.gain = gain, best.one.term = term;
+    Constant& constant = constants_[size_t(site)];
+    if (term.shape->of == TermShape::Of::nothing)
+      constant = {term, columns, gain};
+    else if (with_constants_ && constant.gain > 0 && goes_with_constant(*term.shape))
+      pair(columns, term, constant, std::max(gain, constant.gain), best.pair);
+  }
+  static bool goes_with_constant(const TermShape& shape) {
+    return is_plain(shape) || shape.name == "absolute" || shape.name == "sign";
   }
   /// The term together with a constant, if both gain clearly more than the better of them.
-  void pair(const Eigen::MatrixXd& column, const SiteTerm& term, double gain_of_one,
+  void pair(const Eigen::MatrixXd& column, const SiteTerm& term, const Constant& constant, double gain_of_one,
             SiteCandidate& best) const {
     Eigen::MatrixXd both(column.rows(), 2);
-    both << column, constant_column_;
+    both << column, constant.column;
     SiteTerm joint = term;
     const double gain = explain(both, joint);
     if (gain < gain_of_one + least_gain_of_second || gain <= best.gain) return;
-    best.gain = gain, best.constant = constant_, best.term = joint;
+    best.gain = gain, best.constant = constant.term, best.term = joint;
     best.constant->coefficient[0] = joint.coefficient[1];
     best.term.coefficient[1] = 0;
   }
@@ -259,8 +291,9 @@ class Ranking {
     double most = 0;
     for (const auto& start : shape.starts(values)) {
       if (start[0] == 0) continue;
-      SiteTerm term = term_of(shape, site, own, values, start);
-      Eigen::MatrixXd column = responses(term);
+      SiteTerm term = term_of(shape, own, values, start);
+      evaluate(term);
+      Eigen::MatrixXd column = responses(term, site);
       column -= basis_ * (basis_.transpose() * column);
       most = std::max(most, explain(column, term));
     }
@@ -277,8 +310,8 @@ class Ranking {
     for (const auto& start : shape.starts(values)) {
       if (start[0] == 0) continue;
       SiteHypothesis trial = at_;
-      trial.terms.push_back(term_of(shape, site, own, values, start));
-      trial.terms.back().coefficient[0] = 1;
+      trial.terms.push_back(term_of(shape, own, values, start));
+      trial.terms.back().site = site, trial.terms.back().coefficient[0] = 1;
       const double gain = pass_.scaled_objective() - fitter_.scaled_objective_beside(trial, pass_);
       if (gain > best.gain) best.gain = gain, best.term = trial.terms.back();
     }
@@ -347,16 +380,14 @@ class Ranking {
   SiteHypothesis at_;
   SitePass pass_;
   const bool with_constants_;
-  SiteTerm constant_;  // at the site that is ranked
-  Eigen::MatrixXd constant_column_;
-  double constant_gain_ = 0;
-  bool has_constant_ = false;
+  std::vector<Constant> constants_;  // of the sites
   bool is_good_ = false;
   std::vector<bool> is_multiple_;
   std::vector<int> state_behind_;  // of each variable
   Eigen::MatrixXd basis_;
   Eigen::VectorXd rest_;
-  std::array<std::vector<double>, 3> phi_;
+  std::array<std::vector<double>, 3> phi_;    // at the start, middle and end of each sample
+  std::array<double, most_columns> sizes_{};  // rms of the columns
 };
 
 }  // namespace
