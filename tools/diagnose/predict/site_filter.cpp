@@ -176,9 +176,9 @@ void SiteFilter::release_disturbances(const SiteNoise& noise) {
     if (slow.site >= 0) model_.at_site(slow.site).held = 0;
 }
 
-bool SiteFilter::advance(size_t row, const SiteNoise& noise, double* middle) {
+bool SiteFilter::advance(size_t row, const SiteNoise& noise, double* middle, FlowSlopes* slopes) {
   hold_disturbances(noise);
-  const bool good = model_.flow(row, x_.data(), next_.data(), middle);
+  const bool good = model_.flow(row, x_.data(), next_.data(), middle, slopes);
   release_disturbances(noise);
   for (size_t j = 0; j < noise.slow.size(); ++j) {
     const auto i = Eigen::Index(model_states_ + j);
@@ -187,15 +187,16 @@ bool SiteFilter::advance(size_t row, const SiteNoise& noise, double* middle) {
   return good;
 }
 
-bool SiteFilter::advance_from_correction(size_t row, const SitePass& pass, double* middle, double& share) {
+bool SiteFilter::advance_from_correction(size_t row, const SitePass& pass, double* middle, double& share,
+                                         FlowSlopes* slopes) {
   const Eigen::VectorXd corrected = x_;
   for (share = 1; share > least_share_of_correction; share /= 2) {
     x_ = corrected - (1 - share) * delta_;
-    if (advance(row, pass.noise, middle)) return true;
+    if (advance(row, pass.noise, middle, slopes)) return true;
     model_.put_modes_back(row, &pass.modes[row * model_.mode_bytes()]);
   }
   x_ = corrected - delta_, share = 0;
-  return advance(row, pass.noise, middle);
+  return advance(row, pass.noise, middle, slopes);
 }
 
 void SiteFilter::keep_correction(size_t row, double share, SitePass& pass) const {
@@ -282,6 +283,7 @@ void SiteFilter::predict_covariance(const SitePass& pass, size_t row, const Site
 bool SiteFilter::run(size_t rows, const SiteNoise& noise, bool with_columns, SitePass& pass) {
   pass.noise = noise;
   allocate(rows, with_columns, pass);
+  choose_changes(noise, pass);
   pass.log_variances = pass.squares = 0, pass.readings = 0;
   for (size_t row = 0; row < rows; ++row) {
     if (record_.begins_at(row)) {
@@ -293,7 +295,8 @@ bool SiteFilter::run(size_t rows, const SiteNoise& noise, bool with_columns, Sit
     model_.keep_modes(row, modes_at(pass, row));
     end_.states = x_;
     double share = 1;
-    if (!advance_from_correction(row, pass, with_columns ? middle_.data() : nullptr, share)) return false;
+    if (!advance_from_correction(row, pass, with_columns ? middle_.data() : nullptr, share, &slopes_))
+      return false;
     keep_correction(row, share, pass);
     if (!linearize(row, noise, pass)) return false;
     predict_covariance(pass, row, noise);

@@ -132,10 +132,11 @@ class SiteFilter {
   void hold_disturbances(const SiteNoise& noise);
   void release_disturbances(const SiteNoise& noise);
   /// next_ from x_.
-  bool advance(size_t row, const SiteNoise& noise, double* middle);
+  bool advance(size_t row, const SiteNoise& noise, double* middle, FlowSlopes* slopes);
   /// The same after the correction delta_, or the share of it after which the model is finite: the noise of a
   /// reading may lead where no state can be.
-  bool advance_from_correction(size_t row, const SitePass& pass, double* middle, double& share);
+  bool advance_from_correction(size_t row, const SitePass& pass, double* middle, double& share,
+                               FlowSlopes* slopes = nullptr);
   void keep_correction(size_t row, double share, SitePass& pass) const;
   bool correct(size_t row, const SiteNoise& noise, SitePass& pass);
   bool slopes_of_outputs(size_t row, SitePass& pass);
@@ -143,6 +144,11 @@ class SiteFilter {
   bool linearize(size_t row, const SiteNoise& noise, SitePass& pass);
   /// Those of the model's own states, with the disturbances that act.
   bool differences(size_t row, const SiteNoise& noise, SitePass& pass);
+  /// The same from slopes_, where they are known.
+  void take_slopes(size_t row, SitePass& pass);
+  /// What differences are taken with.
+  void choose_changes(const SiteNoise& noise, const SitePass& pass);
+  bool look_along(size_t row, SitePass& pass);
   bool respond_to(int site, bool ramp, size_t row, SitePass& pass, std::span<double> to);
   /// A flow from other states or with other signals, from the modes of this row.
   bool try_flow(size_t row, const SitePass& pass, const double* from, double* to);
@@ -164,6 +170,7 @@ class SiteFilter {
   Eigen::VectorXd x_, next_, moved_, moved_next_, middle_, gain_, delta_, difference_;
   std::vector<double> y_, y_moved_;
   End end_;
+  FlowSlopes slopes_;
   std::vector<char> modes_, start_modes_;  // after a flow; at the beginning of a record
 };
 

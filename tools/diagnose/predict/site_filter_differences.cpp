@@ -8,9 +8,9 @@ namespace {
 
 using Map = Eigen::Map<Eigen::VectorXd>;
 
-/// The first length at whose end the model is finite; 0 if there is none. A square root ends at an empty tank,
-/// and what moves a state by a notable amount is unknown at first: steps to the other side and shorter ones
-/// are tried then.
+/// The first length at whose end the model is finite; 0 if there is none. A square root ends at an empty
+/// tank, and what moves a state by a notable amount is unknown at first: steps to the other side and shorter
+/// ones are tried then.
 template <class IsFiniteAt> double first_finite(IsFiniteAt&& is_finite_at) {
   for (double length = 1; length > 1e-9; length /= 10) {
     if (is_finite_at(length)) return length;
@@ -39,11 +39,12 @@ bool SiteFilter::slopes_of_outputs(size_t row, SitePass& pass) {
   model_.keep_modes(row, modes_.data());
   for (size_t i = 0; i < model_states_; ++i) {
     const double change = difference_step * state_scale_[i] * first_finite([&](double length) {
-      moved_[Eigen::Index(i)] = x_[Eigen::Index(i)] + length * difference_step * state_scale_[i];
-      model_.put_modes_back(row, modes_.data());
-      return model_.outputs(row, moved_.data(), y_moved_.data()) &&
-             std::ranges::all_of(y_moved_, [](double y) { return std::isfinite(y); });
-    });
+                            moved_[Eigen::Index(i)] =
+                                x_[Eigen::Index(i)] + length * difference_step * state_scale_[i];
+                            model_.put_modes_back(row, modes_.data());
+                            return model_.outputs(row, moved_.data(), y_moved_.data()) &&
+                                   std::ranges::all_of(y_moved_, [](double y) { return std::isfinite(y); });
+                          });
     if (change == 0) return false;
     moved_[Eigen::Index(i)] = x_[Eigen::Index(i)];
     for (size_t j = 0; j < pass.outputs; ++j)
@@ -62,13 +63,14 @@ bool SiteFilter::respond_to(int site, bool ramp, size_t row, SitePass& pass, std
   SiteSignal& signal = model_.at_site(site);
   const double held = signal.held;
   const double size = site_scale_[size_t(site)] * first_finite([&](double length) {
-    const double tried = length * site_scale_[size_t(site)];
-    if (ramp)
-      signal.ramp = tried, signal.begin = record_.time[row], signal.length = record_.step(row);
-    else
-      signal.held = held + tried;
-    return try_flow(row, pass, x_.data(), moved_next_.data());
-  });
+                        const double tried = length * site_scale_[size_t(site)];
+                        if (ramp)
+                          signal.ramp = tried, signal.begin = record_.time[row],
+                          signal.length = record_.step(row);
+                        else
+                          signal.held = held + tried;
+                        return try_flow(row, pass, x_.data(), moved_next_.data());
+                      });
   signal.held = held, signal.ramp = 0;
   if (size == 0) return false;
   for (size_t i = 0; i < to.size(); ++i)  // slow noise stays as it is
@@ -90,16 +92,52 @@ bool SiteFilter::linearize(size_t row, const SiteNoise& noise, SitePass& pass) {
   return good;
 }
 
+void SiteFilter::choose_changes(const SiteNoise& noise, const SitePass& pass) {
+  std::vector<double> of_states, at_sites;
+  for (double scale : state_scale_) of_states.push_back(difference_step * scale);
+  std::vector<int> sites = noise.sites;
+  if (pass.has_columns) {
+    sites.clear();
+    for (int site = 0; site < int(pass.sites); ++site)
+      if (model_.output_of_sensor(site) < 0) sites.push_back(site);
+  }
+  for (int site : sites) at_sites.push_back(site_scale_[size_t(site)]);
+  slopes_.change(of_states, std::move(sites), std::move(at_sites));
+}
+
+void SiteFilter::take_slopes(size_t row, SitePass& pass) {
+  const size_t n = pass.states;
+  const auto m = Eigen::Index(model_states_);
+  Map(&pass.A[row * n * n], Eigen::Index(n * n)).setZero();
+  for (Eigen::Index i = 0; i < m; ++i)
+    Map(&pass.A[(row * n + size_t(i)) * n], m) = slopes_.by_states().col(i);
+  if (pass.has_columns) {  // sensors move no state
+    Map(&pass.G[row * pass.sites * n], Eigen::Index(pass.sites * n)).setZero();
+    Map(&pass.ramp[row * pass.sites * n], Eigen::Index(pass.sites * n)).setZero();
+  }
+  for (size_t s = 0; s < slopes_.sites().size(); ++s) {
+    const size_t at = (row * pass.sites + size_t(slopes_.sites()[s])) * n;
+    Map(&pass.G[at], Eigen::Index(n)).setZero();
+    Map(&pass.G[at], m) = slopes_.by_held(s);
+    if (pass.has_columns) Map(&pass.ramp[at], m) = slopes_.by_ramp(s);
+  }
+}
+
 bool SiteFilter::differences(size_t row, const SiteNoise& noise, SitePass& pass) {
   const size_t n = pass.states;
-  moved_ = x_, moved_next_ = next_;
   model_.keep_modes(row, modes_.data());  // where the next row goes on
+  if (slopes_.is_known()) {
+    take_slopes(row, pass);
+    return !pass.has_columns || look_along(row, pass);
+  }
+  moved_ = x_, moved_next_ = next_;
   Map(&pass.A[row * n * n], Eigen::Index(n * n)).setZero();
   for (size_t i = 0; i < model_states_; ++i) {
     const double change = difference_step * state_scale_[i] * first_finite([&](double length) {
-      moved_[Eigen::Index(i)] = x_[Eigen::Index(i)] + length * difference_step * state_scale_[i];
-      return try_flow(row, pass, moved_.data(), moved_next_.data());
-    });
+                            moved_[Eigen::Index(i)] =
+                                x_[Eigen::Index(i)] + length * difference_step * state_scale_[i];
+                            return try_flow(row, pass, moved_.data(), moved_next_.data());
+                          });
     if (change == 0) return false;
     moved_[Eigen::Index(i)] = x_[Eigen::Index(i)];
     Map(&pass.A[(row * n + i) * n], Eigen::Index(n)) = (moved_next_ - next_) / change;
@@ -116,6 +154,10 @@ bool SiteFilter::differences(size_t row, const SiteNoise& noise, SitePass& pass)
     if (!respond_to(site, false, row, pass, G(site)) || !respond_to(site, true, row, pass, ramp))
       return false;
   }
+  return look_along(row, pass);
+}
+
+bool SiteFilter::look_along(size_t row, SitePass& pass) {
   const double begin = record_.time[row], step = record_.step(row);
   const auto numbers = [&](size_t k) { return &pass.path[k][row * pass.numbers]; };
   model_.put_modes_back(row, modes_at(pass, row));

@@ -112,6 +112,11 @@ void SiteModel::put_modes_back(size_t row, const char* from) {
     std::memcpy(&signal.memory, std::exchange(from, from + sizeof signal.memory), sizeof signal.memory);
 }
 
+bool SiteModel::is_smooth() const {
+  return fronts_.empty() &&
+         std::ranges::all_of(signals_, [](const SiteSignal& signal) { return signal.remembering < 0; });
+}
+
 double SiteModel::longest_step(double length, int stage) {
   double longest = length;
   for (auto& [front, site, term] : fronts_) {
@@ -151,26 +156,61 @@ double SiteModel::step(Run<double>& run, double t, double most, bool ends_at_fro
   return good && !run.failed() ? h : 0;
 }
 
-bool SiteModel::flow(size_t row, const double* from, double* to, double* middle) {
+void SiteModel::linearize_step(Run<double>& run, double t, double length, const double* begin,
+                               FlowSlopes& slopes) {
+  const size_t n = size_t(plan_->states);
+  const double middle = t + 0.5 * length;
+  const double* const slope = slope_[2].data();  // at the second state in the middle
+  for (size_t i = 0; i < n; ++i) stage_[i] = begin[i] + 0.5 * length * slope_[1][i];
+  const auto difference = [&](double change, auto to) {
+    work_.add(1, Work::of_a_block * double(plan_->blocks.size()));
+    if (!run.derivatives_at(middle, stage_.data(), changed_.data())) slopes.give_up();
+    for (size_t i = 0; i < n; ++i) to[Eigen::Index(i)] = (changed_[i] - slope[i]) / change;
+  };
+  for (size_t i = 0; i < n; ++i) {
+    const double before = stage_[i];
+    stage_[i] += slopes.changes_of_states()[i];
+    difference(slopes.changes_of_states()[i], slopes.by_state(i));
+    stage_[i] = before;
+  }
+  for (size_t s = 0; s < slopes.sites().size(); ++s) {
+    double& held = signals_[size_t(slopes.sites()[s])].held;
+    const double before = held;
+    held += slopes.change_at_site(s);
+    difference(slopes.change_at_site(s), slopes.by_site(s));
+    held = before;
+  }
+  if (!slopes.is_known()) run.restored(run.now());
+}
+
+bool SiteModel::flow(size_t row, const double* from, double* to, double* middle, FlowSlopes* slopes) {
   constexpr double nothing_left = 1e-9;
   Run<double>& run = *driven_at(row).run;
   const size_t n = size_t(plan_->states);
-  const double begin = record_.time[row], h = record_.step(row) / substeps_;
+  const double begin = record_.time[row], whole = record_.step(row), h = whole / substeps_;
   std::copy_n(from, n, to);
+  if (slopes) slopes->begin();
+  if (slopes && !is_smooth()) slopes->give_up();
   int parts = 0;
   for (int step = 0; step < substeps_; ++step) {
     const double t = begin + step * h;
     if (has_decisions_) {
       run.look_at(t, to);
       run.evaluate(0, false);
+      if (slopes && !std::equal(to, to + n, run.states().data())) slopes->give_up();
       std::ranges::copy(run.states(), to);  // it may have jumped
       run.reuse_signals();
     }
     for (double done = 0; h - done > nothing_left * h;) {
+      std::copy_n(to, n, begin_.data());
       const double length = this->step(run, t + done, h - done, parts < criteria::most_parts_of_fronts, to);
       if (length == 0) {
         run.restored(run.now());
         return false;
+      }
+      if (slopes && slopes->is_known()) {
+        linearize_step(run, t + done, length, begin_.data(), *slopes);
+        slopes->add_step(length, (step * h + done) / whole, (step * h + done + length) / whole);
       }
       done += length, parts += done < h;
     }

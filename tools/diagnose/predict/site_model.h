@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <vector>
+#include "tools/diagnose/predict/flow_slopes.h"
 #include "tools/diagnose/predict/front.h"
 #include "tools/diagnose/predict/model_parameter.h"
 #include "tools/diagnose/predict/site.h"
@@ -143,8 +144,10 @@ class SiteModel {
   std::vector<double> initial_states(size_t row);
 
   /// The states at the next time stamp; false if they become non-finite or a block stops. `middle`: also
-  /// those in the middle of the sample.
-  bool flow(size_t row, const double* from, double* to, double* middle = nullptr);
+  /// those in the middle of the sample. `slopes`: also what small changes lead to, unless a state jumps, or a
+  /// term has a front or a memory.
+  bool flow(size_t row, const double* from, double* to, double* middle = nullptr,
+            FlowSlopes* slopes = nullptr);
   /// Modes of blocks, such as the state of a relay, change with every flow, look and outputs, and so does
   /// what laws remember: who only tries a way keeps them before and puts them back. In bytes.
   size_t mode_bytes() const { return mode_bytes_; }
@@ -195,12 +198,17 @@ class SiteModel {
   /// The same, with the inputs of the row.
   OwnRun& driven_at(size_t row);
   void draw_all_lines();
+  /// Whether no term has a front or a memory.
+  bool is_smooth() const;
   /// Of a step of this length, after its slope at the begin (0), the first (1) and the second (2) in its
   /// middle.
   double longest_step(double length, int stage);
   /// One step of the method of Runge and Kutta, shorter where a front is on its way. Its length; 0 if the
   /// model is not finite.
   double step(Run<double>& run, double t, double most, bool ends_at_fronts, double* states);
+  /// The derivatives of the right-hand side in the middle of the last step, which began at this time with
+  /// these states.
+  void linearize_step(Run<double>& run, double t, double length, const double* begin, FlowSlopes& slopes);
 
   SignalRecord record_;
   std::shared_ptr<const Plan> plan_;  // of the first record; its numbers are those of every one
@@ -222,7 +230,7 @@ class SiteModel {
   bool has_decisions_ = false, all_are_states_ = true;
   int substeps_ = 2;
   Work work_;
-  std::vector<double> slope_[4], stage_;
+  std::vector<double> slope_[4], stage_, begin_, changed_;
   size_t mode_bytes_ = 0;
 };
 

@@ -248,7 +248,7 @@ void SiteModel::build(const std::string& path, const LoadOptions& options, const
   share_parameters(experiments);
   lines_.resize(record_.inputs.size()), draw_all_lines();
   for (auto& slope : slope_) slope.resize(size_t(plan_->states));
-  stage_.resize(size_t(plan_->states));
+  for (auto* list : {&stage_, &begin_, &changed_}) list->resize(size_t(plan_->states));
   for (const std::span<char> mode : runs_.front().modes) mode_bytes_ += mode.size();
   mode_bytes_ += signals_.size() * sizeof(SiteSignal::memory);
 }

@@ -232,7 +232,10 @@ void SiteFitter::refine(SiteHypothesis& h, int steps) {
 
 /// The best noise about a pass, from a first one.
 SiteNoise SiteFitter::best_noise(const SitePass& pass, const SiteNoise& from) const {
-  constexpr double widest = 12;  // e-fold changes within one search
+  constexpr double widest = 12;     // e-fold changes within one search
+  constexpr double settled = 0.002;  // [in -2 ln L] Smaller improvements end a search,
+  constexpr double notable = 1;     // and larger ones begin another.
+  constexpr int most_rounds = 6;
   const SiteNoise guess = filter_.guess_noise();
   SiteNoise noise = from;
   const std::vector<double*> numbers = fitted_numbers(noise);
@@ -251,17 +254,23 @@ SiteNoise SiteFitter::best_noise(const SitePass& pass, const SiteNoise& from) co
   Objective objective = [&](const std::vector<double>& at) {
     return std::min(filter_.objective_with(pass, noise_at(at)), 1e100);
   };
-  nlopt::opt search(nlopt::LN_SBPLX, unsigned(count));
-  search.set_min_objective([](const std::vector<double>& at, std::vector<double>&,
-                              void* f) { return (*static_cast<Objective*>(f))(at); },
-                           &objective);
-  search.set_lower_bounds(-widest), search.set_upper_bounds(widest);
-  search.set_initial_step(1.0), search.set_ftol_abs(0.05), search.set_maxeval(int(40 * count));
   std::vector<double> x(count, 0.0);
-  double reached = 0;
-  try {
-    search.optimize(x, reached);
-  } catch (const nlopt::roundoff_limited&) {  // x is the best point so far
+  double reached = objective(x);
+  // Quadratic models follow a valley to where its curvature is another one: they are begun anew there.
+  for (int round = 0; round < most_rounds; ++round) {
+    nlopt::opt search(nlopt::LN_BOBYQA, unsigned(count));
+    search.set_min_objective([](const std::vector<double>& at, std::vector<double>&,
+                                void* f) { return (*static_cast<Objective*>(f))(at); },
+                             &objective);
+    search.set_lower_bounds(-widest), search.set_upper_bounds(widest);
+    search.set_initial_step(1.0), search.set_ftol_abs(settled), search.set_maxeval(int(40 * count));
+    const double before = reached;
+    try {
+      search.optimize(x, reached);
+    } catch (const nlopt::roundoff_limited&) {  // x is the best point so far
+      reached = objective(x);
+    }
+    if (!(before - reached > notable)) break;
   }
   return noise_at(x);
 }
