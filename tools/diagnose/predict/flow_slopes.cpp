@@ -1,12 +1,25 @@
 #include "tools/diagnose/predict/flow_slopes.h"
 #include <utility>
+#include "tools/diagnose/predict/sizes.h"
 
 namespace loopwright::diagnosis {
+namespace {
 
-void FlowSlopes::change(std::span<const double> states, std::vector<int> sites,
-                        std::vector<double> at_sites) {
+/// One column of X, with the input B u at the start, in the middle and at the end.
+template <class Matrix, class Vector, class Column>
+void advance(const Matrix& F, const Column& B, double length, const std::array<double, 3>& u, Vector x,
+             Column to) {
+  const Vector k1 = F * x + u[0] * B, k2 = F * (x + length / 2 * k1) + u[1] * B,
+               k3 = F * (x + length / 2 * k2) + u[1] * B, k4 = F * (x + length * k3) + u[2] * B;
+  to = x + length / 6 * (k1 + 2 * (k2 + k3) + k4);
+}
+
+}  // namespace
+
+void FlowSlopes::change(std::span<const double> states, std::vector<int> sites, std::vector<double> at_sites,
+                        bool with_ramps) {
   state_changes_.assign(states.begin(), states.end());
-  sites_ = std::move(sites), site_changes_ = std::move(at_sites);
+  sites_ = std::move(sites), site_changes_ = std::move(at_sites), has_ramps_ = with_ramps;
   const auto n = Eigen::Index(state_changes_.size()), count = Eigen::Index(sites_.size());
   F_.resize(n, n), A_.resize(n, n), B_.resize(n, count), held_.resize(n, count), ramp_.resize(n, count);
 }
@@ -17,24 +30,26 @@ void FlowSlopes::begin() {
 }
 
 void FlowSlopes::add_step(double length, double from, double to) {
-  advance(A_, length, false, {});
-  advance(held_, length, true, {1, 1, 1});
-  advance(ramp_, length, true, {2 * from - 1, from + to - 1, 2 * to - 1});
-  if (!A_.allFinite() || !held_.allFinite() || !ramp_.allFinite()) give_up();
+  with_size(state_changes_.size(), [&]<int N>() { add_step_of<N>(length, from, to); });
 }
 
-void FlowSlopes::advance(Eigen::MatrixXd& X, double length, bool is_driven, const std::array<double, 3>& u) {
-  constexpr double shares[] = {0, 0.5, 0.5, 1}, weights[] = {1, 2, 2, 1};
-  constexpr size_t inputs[] = {0, 1, 1, 2};
-  sum_ = X;
-  for (size_t stage = 0; stage < 4; ++stage) {
-    moved_ = X;
-    if (stage > 0) moved_ += (shares[stage] * length) * slope_;
-    slope_ = F_.lazyProduct(moved_);
-    if (is_driven) slope_ += u[inputs[stage]] * B_;
-    sum_ += (weights[stage] * length / 6) * slope_;
+template <int N> void FlowSlopes::add_step_of(double length, double from, double to) {
+  using Vector = Eigen::Matrix<double, N, 1>;
+  using Column = Eigen::Map<Vector>;
+  const auto n = Eigen::Index(state_changes_.size());
+  const Eigen::Map<const Eigen::Matrix<double, N, N>> F(F_.data(), n, n);
+  const auto column = [&](Eigen::MatrixXd& of, Eigen::Index i) { return Column(of.data() + i * n, n); };
+  bool is_finite = true;
+  const auto through = [&](Eigen::MatrixXd& X, Eigen::Index i, Column B, const std::array<double, 3>& u) {
+    advance<decltype(F), Vector, Column>(F, B, length, u, column(X, i), column(X, i));
+    is_finite &= column(X, i).allFinite();
+  };
+  for (Eigen::Index i = 0; i < n; ++i) through(A_, i, column(F_, 0), {0, 0, 0});
+  for (Eigen::Index s = 0; s < B_.cols(); ++s) {
+    through(held_, s, column(B_, s), {1, 1, 1});
+    if (has_ramps_) through(ramp_, s, column(B_, s), {2 * from - 1, from + to - 1, 2 * to - 1});
   }
-  X.swap(sum_);
+  if (!is_finite) give_up();
 }
 
 }  // namespace loopwright::diagnosis

@@ -15,8 +15,9 @@ namespace loopwright::diagnosis {
 
 class FlowSlopes {
  public:
-  /// For differences: what the states and what is added at these sites are changed by.
-  void change(std::span<const double> states, std::vector<int> sites, std::vector<double> at_sites);
+  /// For differences: what the states and what is added at these sites are changed by. Ramps are asked for.
+  void change(std::span<const double> states, std::vector<int> sites, std::vector<double> at_sites,
+              bool with_ramps);
   std::span<const double> changes_of_states() const { return state_changes_; }
   const std::vector<int>& sites() const { return sites_; }
   double change_at_site(size_t index) const { return site_changes_[index]; }
@@ -38,14 +39,12 @@ class FlowSlopes {
   auto by_ramp(size_t index) const { return ramp_.col(Eigen::Index(index)); }
 
  private:
-  /// With the input B u at the start, in the middle and at the end.
-  void advance(Eigen::MatrixXd& X, double length, bool is_driven, const std::array<double, 3>& u);
+  template <int N> void add_step_of(double length, double from, double to);
 
   std::vector<double> state_changes_, site_changes_;
   std::vector<int> sites_;
   Eigen::MatrixXd F_, B_, A_, held_, ramp_;
-  Eigen::MatrixXd slope_, moved_, sum_;
-  bool is_known_ = false;
+  bool has_ramps_ = false, is_known_ = false;
 };
 
 }  // namespace loopwright::diagnosis

@@ -3,33 +3,10 @@
 #include <cmath>
 #include <limits>
 #include "tools/diagnose/predict/site_filter.h"
+#include "tools/diagnose/predict/sizes.h"
 
 namespace loopwright::diagnosis {
 namespace {
-
-/// f.operator()<N>() with N states, or Eigen::Dynamic if there are many.
-template <class F> auto with_size(size_t states, F&& f) {
-  switch (states) {
-    case 1:
-      return f.template operator()<1>();
-    case 2:
-      return f.template operator()<2>();
-    case 3:
-      return f.template operator()<3>();
-    case 4:
-      return f.template operator()<4>();
-    case 5:
-      return f.template operator()<5>();
-    case 6:
-      return f.template operator()<6>();
-    case 7:
-      return f.template operator()<7>();
-    case 8:
-      return f.template operator()<8>();
-    default:
-      return f.template operator()<Eigen::Dynamic>();
-  }
-}
 
 /// Mean of a term over a sample, by Simpson's rule.
 double mean_of(double start, double middle, double end) { return (start + 4 * middle + end) / 6; }

@@ -4,6 +4,30 @@
 
 namespace loopwright::diagnosis {
 
+/// f.operator()<N>() with N states, or Eigen::Dynamic if there are many.
+template <class F> auto with_size(size_t states, F&& f) {
+  switch (states) {
+    case 1:
+      return f.template operator()<1>();
+    case 2:
+      return f.template operator()<2>();
+    case 3:
+      return f.template operator()<3>();
+    case 4:
+      return f.template operator()<4>();
+    case 5:
+      return f.template operator()<5>();
+    case 6:
+      return f.template operator()<6>();
+    case 7:
+      return f.template operator()<7>();
+    case 8:
+      return f.template operator()<8>();
+    default:
+      return f.template operator()<Eigen::Dynamic>();
+  }
+}
+
 /// Calls f<states, ports>() with the sizes of usual axes: measured by velocity, by position, or by both; with
 /// a load of its own and a lag. For any other it calls f<0, 0>().
 template <class F> void with_sizes(Eigen::Index states, Eigen::Index ports, F&& f) {
