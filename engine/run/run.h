@@ -98,6 +98,9 @@ template <class Real> class Run {
   /// To be called after evaluate(): the signals are those of the present time and states. If the next call of
   /// derivatives_at is for these, it does not compute them again.
   void reuse_signals() { signals_are_current_ = accepts_.empty() && algebraic_loops_.empty(); }
+  /// From here on derivatives_at and evaluate(0, false) do not call these blocks, one flag for each block of
+  /// the plan: what reads them reads the values that their outputs have or are set to.
+  void leave_out(const std::vector<bool>& blocks);
   bool crossings_at(double time, const double* x, double* value);
   /// Sets states and time; signals are not yet computed.
   void look_at(double time, const double* x);
@@ -212,6 +215,7 @@ template <class Real> class Run {
   std::vector<std::vector<std::unique_ptr<GateCall<Real>>>> gates_;
   std::vector<Call<Real>> constants_, early_, between_, stage_, for_events_, held_, accepts_, jumps_,
       crossings_, slopes_;
+  std::vector<Call<Real>> whole_between_, whole_stage_;  // with what is left out
   // For fixed-step methods, for each stage; see run_stages.h.
   std::array<Real*, 4> slope_{};    // kept until the end of the step: summing them earlier would cost more
   std::array<Real*, 2> stage_x_{};  // states of the second and fourth stage, and of the third

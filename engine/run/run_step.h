@@ -108,6 +108,17 @@ template <class Real> bool Run<Real>::derivatives_at(double time, const double* 
   return bad == 0;
 }
 
+template <class Real> void Run<Real>::leave_out(const std::vector<bool>& blocks) {
+  if (whole_stage_.empty()) whole_between_ = between_, whole_stage_ = stage_;
+  const auto leave_out_of = [&](const std::vector<Call<Real>>& whole, std::vector<Call<Real>>& calls) {
+    calls.clear();
+    std::ranges::copy_if(whole, std::back_inserter(calls),
+                         [&](const Call<Real>& c) { return !blocks[size_t(c.index)]; });
+  };
+  leave_out_of(whole_between_, between_), leave_out_of(whole_stage_, stage_);
+  signals_are_current_ = false;
+}
+
 template <class Real> bool Run<Real>::crossings_at(double time, const double* x, double* value) {
   look_at(time, x);
   forget_trials();

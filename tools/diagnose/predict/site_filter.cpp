@@ -168,12 +168,12 @@ void SiteFilter::add_slow_errors(const SiteNoise& noise) {
 void SiteFilter::hold_disturbances(const SiteNoise& noise) {
   for (size_t j = 0; j < noise.slow.size(); ++j)
     if (const int site = noise.slow[j].site; site >= 0)
-      model_.at_site(site).held = x_[Eigen::Index(model_states_ + j)];
+      model_.hold(site, x_[Eigen::Index(model_states_ + j)]);
 }
 
 void SiteFilter::release_disturbances(const SiteNoise& noise) {
   for (const SlowNoise& slow : noise.slow)
-    if (slow.site >= 0) model_.at_site(slow.site).held = 0;
+    if (slow.site >= 0) model_.hold(slow.site, 0);
 }
 
 bool SiteFilter::advance(size_t row, const SiteNoise& noise, double* middle, FlowSlopes* slopes) {

@@ -60,18 +60,18 @@ bool SiteFilter::respond_to(int site, bool ramp, size_t row, SitePass& pass, std
     std::ranges::fill(to, 0.0);
     return true;
   }
-  SiteSignal& signal = model_.at_site(site);
-  const double held = signal.held;
-  const double size = site_scale_[size_t(site)] * first_finite([&](double length) {
-                        const double tried = length * site_scale_[size_t(site)];
-                        if (ramp)
-                          signal.ramp = tried, signal.begin = record_.time[row],
-                          signal.length = record_.step(row);
-                        else
-                          signal.held = held + tried;
-                        return try_flow(row, pass, x_.data(), moved_next_.data());
-                      });
-  signal.held = held, signal.ramp = 0;
+  const double held = model_.held(site);
+  const auto is_finite_with = [&](double length) {
+    const double tried = length * site_scale_[size_t(site)];
+    if (ramp)
+      model_.set_ramp(site, row, tried);
+    else
+      model_.hold(site, held + tried);
+    return try_flow(row, pass, x_.data(), moved_next_.data());
+  };
+  const double size = site_scale_[size_t(site)] * first_finite(is_finite_with);
+  if (ramp) model_.set_ramp(site, row, 0);
+  model_.hold(site, held);
   if (size == 0) return false;
   for (size_t i = 0; i < to.size(); ++i)  // slow noise stays as it is
     to[i] = (moved_next_[Eigen::Index(i)] - next_[Eigen::Index(i)]) / size;

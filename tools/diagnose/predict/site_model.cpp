@@ -43,12 +43,12 @@ void SiteModel::use(std::span<const double> factors, std::span<const SiteTerm> t
   for (OwnRun& own : runs_) own.parameters.set(factors);
   for (SiteSignal& signal : signals_)
     signal.terms.clear(), signal.held = signal.ramp = 0, signal.remembering = -1;
-  fronts_.clear();
+  fronts_.clear(), has_memory_ = false;
   if (std::exchange(is_late_, false)) draw_all_lines();
   for (const SiteTerm& term : terms) {
     if (term.shape->of != TermShape::Of::past) {
       SiteSignal& signal = signals_[size_t(term.site)];
-      if (term.shape->remembered) signal.remembering = int(signal.terms.size());
+      if (term.shape->remembered) signal.remembering = int(signal.terms.size()), has_memory_ = true;
       if (term.shape->has_front && output_of_sensor(term.site) < 0)
         fronts_.push_back({Front(term.nonlinear[0]), size_t(term.site), signal.terms.size()});
       signal.terms.emplace_back(term, term.variable < 0 ? SiteVariable{} : variables_[size_t(term.variable)]);
@@ -57,7 +57,31 @@ void SiteModel::use(std::span<const double> factors, std::span<const SiteTerm> t
     InputLines& lines = lines_[size_t(input_of(term.site))];
     lines = term.shape->late(record_, lines, term.nonlinear[0], term.nonlinear[1]), is_late_ = true;
   }
+  leave_idle_sites_out();
   for (const OwnRun& own : runs_) own.run->reset({own.plan->seed, 0});
+}
+
+void SiteModel::leave_idle_sites_out() {
+  is_idle_.assign(sites_.size(), false);
+  if (runs_.size() > 1) return;  // what is held would be in the numbers of one of them
+  std::vector<bool> blocks(plan_->blocks.size(), false);
+  for (size_t s = 0; s < sites_.size(); ++s)
+    if (site_blocks_[s] >= 0 && signals_[s].terms.empty() && signals_[s].ramp == 0)
+      blocks[size_t(site_blocks_[s])] = is_idle_[s] = true;
+  runs_.front().run->leave_out(blocks);
+}
+
+void SiteModel::hold(int site, double value) {
+  signals_[size_t(site)].held = value;
+  if (is_idle_[size_t(site)])
+    runs_.front().numbers[plan_->blocks[size_t(site_blocks_[size_t(site)])].outputs[0]] = value;
+}
+
+void SiteModel::set_ramp(int site, size_t row, double ramp) {
+  SiteSignal& signal = signals_[size_t(site)];
+  signal.ramp = ramp, signal.begin = record_.time[row], signal.length = record_.step(row);
+  leave_idle_sites_out();
+  hold(site, signal.held);
 }
 
 void SiteModel::suppose_between_rows(size_t input, BetweenRows between) {
@@ -110,11 +134,6 @@ void SiteModel::put_modes_back(size_t row, const char* from) {
     std::copy_n(from, mode.size(), mode.data()), from += mode.size();
   for (SiteSignal& signal : signals_)
     std::memcpy(&signal.memory, std::exchange(from, from + sizeof signal.memory), sizeof signal.memory);
-}
-
-bool SiteModel::is_smooth() const {
-  return fronts_.empty() &&
-         std::ranges::all_of(signals_, [](const SiteSignal& signal) { return signal.remembering < 0; });
 }
 
 double SiteModel::longest_step(double length, int stage) {
@@ -174,11 +193,11 @@ void SiteModel::linearize_step(Run<double>& run, double t, double length, const 
     stage_[i] = before;
   }
   for (size_t s = 0; s < slopes.sites().size(); ++s) {
-    double& held = signals_[size_t(slopes.sites()[s])].held;
-    const double before = held;
-    held += slopes.change_at_site(s);
+    const int site = slopes.sites()[s];
+    const double before = held(site);
+    hold(site, before + slopes.change_at_site(s));
     difference(slopes.change_at_site(s), slopes.by_site(s));
-    held = before;
+    hold(site, before);
   }
   if (!slopes.is_known()) run.restored(run.now());
 }
@@ -190,7 +209,7 @@ bool SiteModel::flow(size_t row, const double* from, double* to, double* middle,
   const double begin = record_.time[row], whole = record_.step(row), h = whole / substeps_;
   std::copy_n(from, n, to);
   if (slopes) slopes->begin();
-  if (slopes && !is_smooth()) slopes->give_up();
+  if (slopes && has_memory_) slopes->give_up();
   int parts = 0;
   for (int step = 0; step < substeps_; ++step) {
     const double t = begin + step * h;
@@ -208,6 +227,7 @@ bool SiteModel::flow(size_t row, const double* from, double* to, double* middle,
         run.restored(run.now());
         return false;
       }
+      if (slopes && (done > 0 || length < h || parts > 0)) slopes->give_up();  // a front is on its way
       if (slopes && slopes->is_known()) {
         linearize_step(run, t + done, length, begin_.data(), *slopes);
         slopes->add_step(length, (step * h + done) / whole, (step * h + done + length) / whole);

@@ -144,8 +144,8 @@ class SiteModel {
   std::vector<double> initial_states(size_t row);
 
   /// The states at the next time stamp; false if they become non-finite or a block stops. `middle`: also
-  /// those in the middle of the sample. `slopes`: also what small changes lead to, unless a state jumps, or a
-  /// term has a front or a memory.
+  /// those in the middle of the sample. `slopes`: also what small changes lead to, unless a state jumps, a
+  /// term has a memory, or a front is on its way.
   bool flow(size_t row, const double* from, double* to, double* middle = nullptr,
             FlowSlopes* slopes = nullptr);
   /// Modes of blocks, such as the state of a relay, change with every flow, look and outputs, and so does
@@ -154,7 +154,10 @@ class SiteModel {
   void keep_modes(size_t row, char* to);
   void put_modes_back(size_t row, const char* from);
   /// What is added at a site, over every flow until it is set again.
-  SiteSignal& at_site(int site) { return signals_[size_t(site)]; }
+  void hold(int site, double value);
+  double held(int site) const { return signals_[size_t(site)].held; }
+  /// What rises there from -ramp to ramp over the sample; 0: nothing.
+  void set_ramp(int site, size_t row, double ramp);
   /// All numbers at given states, with the inputs of this row.
   bool look(size_t row, double time, const double* states, double* numbers);
   /// The outputs at these states, with the inputs of this row.
@@ -198,8 +201,8 @@ class SiteModel {
   /// The same, with the inputs of the row.
   OwnRun& driven_at(size_t row);
   void draw_all_lines();
-  /// Whether no term has a front or a memory.
-  bool is_smooth() const;
+  /// Sites at which nothing is added cost nothing.
+  void leave_idle_sites_out();
   /// Of a step of this length, after its slope at the begin (0), the first (1) and the second (2) in its
   /// middle.
   double longest_step(double length, int stage);
@@ -216,6 +219,8 @@ class SiteModel {
   std::vector<Site> sites_;
   const OwnRun* is_read_ = nullptr;  // by the signals
   std::vector<SiteSignal> signals_;  // one for each site; its blocks point to it
+  std::vector<int> site_blocks_;     // in the plan; -1: a sensor
+  std::vector<bool> is_idle_;        // sites whose blocks are left out
   std::vector<FrontOfTerm> fronts_;  // of the terms in use
   std::vector<SiteVariable> variables_;
   std::vector<ModelParameter> parameters_;  // as the first record has them
@@ -224,6 +229,7 @@ class SiteModel {
   std::vector<bool> drives_state_;
   std::vector<size_t> sensor_sites_;  // of the outputs
   std::vector<InputLines> lines_;     // of the inputs, as they act
+  bool has_memory_ = false;           // whether a term in use has one
   bool is_late_ = false;              // whether one of them is not as recorded
   std::vector<Number> outputs_;
   std::vector<int> measured_state_;

@@ -201,8 +201,8 @@ void SiteModel::read_records(const std::vector<std::shared_ptr<const Plan>>& pla
 std::shared_ptr<const Plan> SiteModel::with_site_blocks(const Plan& compiled) const {
   auto plan = std::make_shared<Plan>(compiled);
   for (size_t s = 0; s < sites_.size(); ++s) {
-    if (sites_[s].kind == Site::Kind::sensor) continue;
-    const int block = block_at(*plan, sites_[s].term_block);
+    const int block = site_blocks_[s];
+    if (block < 0) continue;
     plan->blocks[size_t(block)].type = &site_block_type();
     plan->blocks[size_t(block)].value = std::make_shared<SiteBlock>(SiteBlock{&signals_[s]});
     evaluate_late(*plan, block);
@@ -230,6 +230,9 @@ void SiteModel::build(const std::string& path, const LoadOptions& options, const
   reject_other_structure(compiled, experiments, problems);
   add_sensors(*plain.front());
   signals_.resize(sites_.size());
+  for (const Site& site : sites_)
+    site_blocks_.push_back(site.kind == Site::Kind::sensor ? -1
+                                                           : block_at(*compiled.front(), site.term_block));
   for (const auto& plan : compiled) runs_.push_back({with_site_blocks(*plan), nullptr, nullptr, {}, {}, {}});
   for (const RecordedInput& input : record_.inputs)
     for (Site& site : sites_)
@@ -246,6 +249,7 @@ void SiteModel::build(const std::string& path, const LoadOptions& options, const
   }
   plan_ = runs_.front().plan;
   share_parameters(experiments);
+  leave_idle_sites_out();
   lines_.resize(record_.inputs.size()), draw_all_lines();
   for (auto& slope : slope_) slope.resize(size_t(plan_->states));
   for (auto* list : {&stage_, &begin_, &changed_}) list->resize(size_t(plan_->states));
