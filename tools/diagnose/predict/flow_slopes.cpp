@@ -5,13 +5,11 @@
 namespace loopwright::diagnosis {
 namespace {
 
-/// One column of X, with the input B u at the start, in the middle and at the end.
-template <class Matrix, class Vector, class Column>
-void advance(const Matrix& F, const Column& B, double length, const std::array<double, 3>& u, Vector x,
-             Column to) {
-  const Vector k1 = F * x + u[0] * B, k2 = F * (x + length / 2 * k1) + u[1] * B,
-               k3 = F * (x + length / 2 * k2) + u[1] * B, k4 = F * (x + length * k3) + u[2] * B;
-  to = x + length / 6 * (k1 + 2 * (k2 + k3) + k4);
+template <class Matrix> Matrix product(const Matrix& a, const Matrix& b) {
+  Matrix c = Matrix::Zero(a.rows(), b.cols());
+  for (Eigen::Index j = 0; j < b.cols(); ++j)
+    for (Eigen::Index k = 0; k < a.cols(); ++k) c.col(j) += b(k, j) * a.col(k);
+  return c;
 }
 
 }  // namespace
@@ -26,28 +24,41 @@ void FlowSlopes::change(std::span<const double> states, std::vector<int> sites, 
 
 void FlowSlopes::begin() {
   A_.setIdentity(), held_.setZero(), ramp_.setZero();
-  is_known_ = true;
+  is_known_ = is_first_ = true;
 }
 
 void FlowSlopes::add_step(double length, double from, double to) {
   with_size(state_changes_.size(), [&]<int N>() { add_step_of<N>(length, from, to); });
 }
 
+/// With M = length F a step is X ← Φ X + length (Ψ₀ B u(0) + Ψ₁ B u(h/2) + B u(h) / 6), where
+///   Φ = I + M Ψ,   Ψ = I + M/2 + M²/6 + M³/24,   Ψ₀ = (I + M + M²/2 + M³/4) / 6,   Ψ₁ = (4 I + 2 M + M²/2)
+///   / 6.
 template <int N> void FlowSlopes::add_step_of(double length, double from, double to) {
+  using Matrix = Eigen::Matrix<double, N, N>;
   using Vector = Eigen::Matrix<double, N, 1>;
-  using Column = Eigen::Map<Vector>;
   const auto n = Eigen::Index(state_changes_.size());
-  const Eigen::Map<const Eigen::Matrix<double, N, N>> F(F_.data(), n, n);
-  const auto column = [&](Eigen::MatrixXd& of, Eigen::Index i) { return Column(of.data() + i * n, n); };
-  bool is_finite = true;
-  const auto through = [&](Eigen::MatrixXd& X, Eigen::Index i, Column B, const std::array<double, 3>& u) {
-    advance<decltype(F), Vector, Column>(F, B, length, u, column(X, i), column(X, i));
-    is_finite &= column(X, i).allFinite();
+  const Matrix one = Matrix::Identity(n, n), M = length * Eigen::Map<const Matrix>(F_.data(), n, n),
+               square = product<Matrix>(M, M), cube = product<Matrix>(square, M);
+  const Matrix whole = one + M / 2 + square / 6 + cube / 24, through = one + product<Matrix>(M, whole);
+  Eigen::Map<Matrix> A(A_.data(), n, n);
+  A = is_first_ ? through : product<Matrix>(through, A);
+  is_first_ = false;
+  bool is_finite = A.allFinite();
+  const auto column = [&](Eigen::MatrixXd& of, Eigen::Index i) {
+    return Eigen::Map<Vector>(of.data() + i * n, n);
   };
-  for (Eigen::Index i = 0; i < n; ++i) through(A_, i, column(F_, 0), {0, 0, 0});
   for (Eigen::Index s = 0; s < B_.cols(); ++s) {
-    through(held_, s, column(B_, s), {1, 1, 1});
-    if (has_ramps_) through(ramp_, s, column(B_, s), {2 * from - 1, from + to - 1, 2 * to - 1});
+    const Vector B = length * column(B_, s);
+    column(held_, s) = (through * column(held_, s) + whole * B).eval();
+    is_finite &= column(held_, s).allFinite();
+    if (!has_ramps_) continue;
+    const Vector MB = M * B, MMB = square * B, MMMB = cube * B;
+    const double first = 2 * from - 1, middle = from + to - 1, last = 2 * to - 1;
+    const Vector added =
+        first * (B + MB + MMB / 2 + MMMB / 4) + middle * (4 * B + 2 * MB + MMB / 2) + last * B;
+    column(ramp_, s) = (through * column(ramp_, s) + added / 6).eval();
+    is_finite &= column(ramp_, s).allFinite();
   }
   if (!is_finite) give_up();
 }

@@ -44,7 +44,7 @@ class FlowSlopes {
   std::vector<double> state_changes_, site_changes_;
   std::vector<int> sites_;
   Eigen::MatrixXd F_, B_, A_, held_, ramp_;
-  bool has_ramps_ = false, is_known_ = false;
+  bool has_ramps_ = false, is_known_ = false, is_first_ = false;
 };
 
 }  // namespace loopwright::diagnosis

@@ -1,7 +1,7 @@
 #include "tools/diagnose/search/site_ranking.h"
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <utility>
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/remembered_path.h"
 #include "tools/diagnose/search/state_behind.h"
@@ -11,6 +11,9 @@ namespace {
 
 using criteria::least_energy, criteria::least_gain_of_second, criteria::share_of_held, criteria::of_far;
 using criteria::of_derived, criteria::of_difference, criteria::of_indirect_sum, criteria::of_sensor;
+
+/// First values of a shape, as of a pitch, of which more are compared coarsely before the best one is judged.
+constexpr size_t most_starts = 30;
 
 /// Far from its site a variable enters by plain laws only, and so does a recorded input or the output of a
 /// filter into its own distortion: others would resemble saturation and dead zone.
@@ -180,8 +183,9 @@ class Ranking {
         for (double& number : *list) number *= fitter_.model().record().sample_time;
     return term;
   }
-  /// phi_ and sizes_ of the term's columns, which are the same at every site.
-  void evaluate(const SiteTerm& term) {
+  /// phi_ and sizes_ of the term's columns, which are the same at every site. What is evaluated in the middle
+  /// alone is supposed to stay so over each sample.
+  void evaluate(const SiteTerm& term, bool in_middle_alone) {
     const SiteVariable none;
     const SiteVariable& variable =
         term.variable < 0 ? none : fitter_.model().variables()[size_t(term.variable)];
@@ -189,7 +193,8 @@ class Ranking {
     for (auto& list : phi_) list.resize(count * rows);
     if (term.shape->remembered) phi_ = remembered_along(fitter_.model(), pass_, term);
     std::array<double, most_columns> square{}, all;
-    for (size_t part = 0; part < 3; ++part)
+    for (size_t part = 0; part < 3; ++part) {
+      if (in_middle_alone && part != 1) continue;
       for (size_t k = 0; k < rows; ++k) {
         if (term.shape->remembered)
           all[0] = phi_[part][k];
@@ -197,7 +202,10 @@ class Ranking {
           term.columns(term.variable < 0 ? 0 : variable.at(&pass_.path[part][k * pass_.numbers]), all.data());
         for (size_t c = 0; c < count; ++c) phi_[part][c * rows + k] = all[c], square[c] += all[c] * all[c];
       }
-    for (size_t c = 0; c < count; ++c) sizes_[c] = std::sqrt(square[c] / (3 * double(rows)));
+    }
+    is_in_middle_alone_ = in_middle_alone;
+    for (size_t c = 0; c < count; ++c)
+      sizes_[c] = std::sqrt(square[c] / ((in_middle_alone ? 1 : 3) * double(rows)));
   }
   /// The responses of the errors to the evaluated columns at a site, at coefficients of one.
   Eigen::MatrixXd responses(SiteTerm& term, int site) {
@@ -206,7 +214,9 @@ class Ranking {
     Eigen::MatrixXd columns(Eigen::Index(pass_.error.size()), term.shape->columns);
     for (size_t c = 0; c < size_t(term.shape->columns); ++c) {
       term.unit[c] = sizes_[c] > 0 ? fitter_.filter().site_scale(site) / sizes_[c] : 1;
-      const auto along = [&](size_t part) { return std::span(phi_[part]).subspan(c * rows, rows); };
+      const auto along = [&](size_t part) {
+        return std::span(phi_[is_in_middle_alone_ ? 1 : part]).subspan(c * rows, rows);
+      };
       fitter_.filter().respond(pass_, site, along(0), along(1), along(2),
                                {columns.col(Eigen::Index(c)).data(), pass_.error.size()});
     }
@@ -221,12 +231,20 @@ class Ranking {
     const std::vector<double> values = signal(variable);
     std::vector<std::array<double, most_nonlinear>> starts{{}};
     if (shape.starts) starts = shape.starts(values);
+    if (shape.starts) std::erase_if(starts, [](const auto& start) { return start[0] == 0 && start[1] == 0; });
+    const bool are_many =
+        starts.size() > most_starts;  // they are compared by the middle of each sample first
     std::vector<Best> best(sites.size());
     for (const auto& start : starts) {
-      if (shape.starts && !(start[0] != 0 || start[1] != 0)) continue;
       const SiteTerm term = term_of(shape, variable, values, start);
-      evaluate(term);
+      evaluate(term, are_many);
       for (size_t s = 0; s < sites.size(); ++s) rank_at(sites[s], term, best[s]);
+    }
+    for (size_t s = 0; are_many && s < sites.size(); ++s) {
+      if (best[s].one.gain <= 0) continue;
+      const SiteTerm term = std::exchange(best[s], {}).one.term;
+      evaluate(term, false);
+      rank_at(sites[s], term, best[s]);
     }
     for (size_t s = 0; s < sites.size(); ++s)
       for (SiteCandidate* candidate : {&best[s].one, &best[s].pair}) {
@@ -292,7 +310,7 @@ class Ranking {
     for (const auto& start : shape.starts(values)) {
       if (start[0] == 0) continue;
       SiteTerm term = term_of(shape, own, values, start);
-      evaluate(term);
+      evaluate(term, false);
       Eigen::MatrixXd column = responses(term, site);
       column -= basis_ * (basis_.transpose() * column);
       most = std::max(most, explain(column, term));
@@ -387,6 +405,7 @@ class Ranking {
   Eigen::MatrixXd basis_;
   Eigen::VectorXd rest_;
   std::array<std::vector<double>, 3> phi_;    // at the start, middle and end of each sample
+  bool is_in_middle_alone_ = false;           // and then in the middle for all of it
   std::array<double, most_columns> sizes_{};  // rms of the columns
 };
 
