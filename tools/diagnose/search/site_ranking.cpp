@@ -3,8 +3,8 @@
 #include <cmath>
 #include <utility>
 #include "tools/diagnose/criteria.h"
-#include "tools/diagnose/search/remembered_path.h"
 #include "tools/diagnose/search/state_behind.h"
+#include "tools/diagnose/search/term_responses.h"
 
 namespace loopwright::diagnosis {
 namespace {
@@ -22,37 +22,15 @@ bool is_plain(const TermShape& shape) {
          shape.name == "cube";
 }
 
-/// An orthonormal basis of the columns.
-Eigen::MatrixXd basis_of(const Eigen::MatrixXd& J) {
-  if (J.cols() == 0) return J;
-  Eigen::VectorXd norm = J.colwise().norm().transpose();
-  for (double& size : norm)
-    if (!(size > 0)) size = 1;
-  const Eigen::MatrixXd unit = J * norm.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(unit.transpose() * unit);
-  Eigen::MatrixXd basis(J.rows(), J.cols());
-  Eigen::Index count = 0;
-  for (Eigen::Index i = 0; i < J.cols(); ++i)
-    if (eigen.eigenvalues()[i] > criteria::weakest_direction)
-      basis.col(count++) = unit * eigen.eigenvectors().col(i) / std::sqrt(eigen.eigenvalues()[i]);
-  return basis.leftCols(count);
-}
-
 class Ranking {
  public:
   Ranking(SiteFitter& fitter, SiteHypothesis hypothesis, bool with_constants)
-      : fitter_(fitter), at_(std::move(hypothesis)), with_constants_(with_constants) {
-    is_good_ = fitter_.pass(at_, true, pass_);
-    if (!is_good_) return;
-    basis_ = basis_of(fitter_.jacobian(at_, pass_));
-    rest_ = fitter_.whitened(pass_);
-    rest_ -= basis_ * (basis_.transpose() * rest_);
-    for (auto& list : phi_) list.resize(pass_.rows);
-    find_multiples();
+      : fitter_(fitter), at_(std::move(hypothesis)), to_(fitter, at_), with_constants_(with_constants) {
+    if (to_.is_good()) find_multiples();
   }
 
   std::vector<SiteCandidate> run(std::span<const TermShape> shapes) {
-    if (!is_good_) return {};
+    if (!to_.is_good()) return {};
     const SiteModel& model = fitter_.model();
     constants_.resize(model.sites().size());
     Lists lists(model.sites().size());
@@ -83,7 +61,7 @@ class Ranking {
   }
 
   std::vector<SiteCandidate> run_at(std::span<const TermShape> shapes, int site, int variable) {
-    if (!is_good_) return {};
+    if (!to_.is_good()) return {};
     constants_.resize(fitter_.model().sites().size());
     Lists lists(constants_.size());
     for (const TermShape& shape : shapes) rank(shape, {site}, variable, lists);
@@ -106,7 +84,7 @@ class Ranking {
     for (const bool states : {true, false})
       for (size_t v = 0; v < variables.size(); ++v) {
         if (variables[v].is_state != states) continue;
-        const std::vector<double> values = signal(int(v));
+        const std::vector<double> values = to_.signal(int(v));
         const Eigen::Map<const Eigen::VectorXd> along(values.data(), Eigen::Index(values.size()));
         const double size = along.norm();
         is_multiple_[v] = !(size > 0) || std::ranges::any_of(directions, [&](const auto& known) {
@@ -114,13 +92,13 @@ class Ranking {
         });
         if (!is_multiple_[v]) directions.push_back(along / size);
       }
-    state_behind_ = states_behind(fitter_.model(), pass_);
+    state_behind_ = states_behind(fitter_.model(), to_.pass());
   }
   bool acts(int site) const {
     if (is_sensor(site)) return true;
-    for (size_t k = 0; k < pass_.rows; ++k)
-      for (size_t i = 0; i < pass_.states; ++i)
-        if (pass_.G[(k * pass_.sites + size_t(site)) * pass_.states + i] != 0) return true;
+    for (size_t k = 0; k < to_.pass().rows; ++k)
+      for (size_t i = 0; i < to_.pass().states; ++i)
+        if (to_.pass().G[(k * to_.pass().sites + size_t(site)) * to_.pass().states + i] != 0) return true;
     return false;
   }
   /// A recorded input or the output of a filter: a term there depends on the signal itself. Others act at a
@@ -155,14 +133,6 @@ class Ranking {
     if (shape.nonlinear[0] == "level" && state_behind_[size_t(variable)] != variable) return false;
     return shape.fits(model.sites()[size_t(site)].quantity, model.variables()[size_t(variable)].quantity);
   }
-  /// Along the path, at the start of each sample.
-  std::vector<double> signal(int variable) const {
-    std::vector<double> values(pass_.rows);
-    for (size_t k = 0; variable >= 0 && k < pass_.rows; ++k)
-      values[k] = fitter_.model().variables()[size_t(variable)].at(&pass_.path[0][k * pass_.numbers]);
-    return values;
-  }
-  /// At any site.
   SiteTerm term_of(const TermShape& shape, int variable, const std::vector<double>& values,
                    const std::array<double, most_nonlinear>& start) const {
     SiteTerm term;
@@ -183,52 +153,13 @@ class Ranking {
         for (double& number : *list) number *= fitter_.model().record().sample_time;
     return term;
   }
-  /// phi_ and sizes_ of the term's columns, which are the same at every site. What is evaluated in the middle
-  /// alone is supposed to stay so over each sample.
-  void evaluate(const SiteTerm& term, bool in_middle_alone) {
-    const SiteVariable none;
-    const SiteVariable& variable =
-        term.variable < 0 ? none : fitter_.model().variables()[size_t(term.variable)];
-    const size_t count = size_t(term.shape->columns), rows = pass_.rows;
-    for (auto& list : phi_) list.resize(count * rows);
-    if (term.shape->remembered) phi_ = remembered_along(fitter_.model(), pass_, term);
-    std::array<double, most_columns> square{}, all;
-    for (size_t part = 0; part < 3; ++part) {
-      if (in_middle_alone && part != 1) continue;
-      for (size_t k = 0; k < rows; ++k) {
-        if (term.shape->remembered)
-          all[0] = phi_[part][k];
-        else
-          term.columns(term.variable < 0 ? 0 : variable.at(&pass_.path[part][k * pass_.numbers]), all.data());
-        for (size_t c = 0; c < count; ++c) phi_[part][c * rows + k] = all[c], square[c] += all[c] * all[c];
-      }
-    }
-    is_in_middle_alone_ = in_middle_alone;
-    for (size_t c = 0; c < count; ++c)
-      sizes_[c] = std::sqrt(square[c] / ((in_middle_alone ? 1 : 3) * double(rows)));
-  }
-  /// The responses of the errors to the evaluated columns at a site, at coefficients of one.
-  Eigen::MatrixXd responses(SiteTerm& term, int site) {
-    term.site = site;
-    const size_t rows = pass_.rows;
-    Eigen::MatrixXd columns(Eigen::Index(pass_.error.size()), term.shape->columns);
-    for (size_t c = 0; c < size_t(term.shape->columns); ++c) {
-      term.unit[c] = sizes_[c] > 0 ? fitter_.filter().site_scale(site) / sizes_[c] : 1;
-      const auto along = [&](size_t part) {
-        return std::span(phi_[is_in_middle_alone_ ? 1 : part]).subspan(c * rows, rows);
-      };
-      fitter_.filter().respond(pass_, site, along(0), along(1), along(2),
-                               {columns.col(Eigen::Index(c)).data(), pass_.error.size()});
-    }
-    return columns;
-  }
   struct Best {
     SiteCandidate one, pair;
   };
   void rank(const TermShape& shape, std::vector<int> sites, int variable, Lists& lists) {
     std::erase_if(sites, [&](int site) { return is_there(shape, site, variable); });
     if (sites.empty()) return;
-    const std::vector<double> values = signal(variable);
+    const std::vector<double> values = to_.signal(variable);
     std::vector<std::array<double, most_nonlinear>> starts{{}};
     if (shape.starts) starts = shape.starts(values);
     if (shape.starts) std::erase_if(starts, [](const auto& start) { return start[0] == 0 && start[1] == 0; });
@@ -237,13 +168,13 @@ class Ranking {
     std::vector<Best> best(sites.size());
     for (const auto& start : starts) {
       const SiteTerm term = term_of(shape, variable, values, start);
-      evaluate(term, are_many);
+      to_.evaluate(term, are_many);
       for (size_t s = 0; s < sites.size(); ++s) rank_at(sites[s], term, best[s]);
     }
     for (size_t s = 0; are_many && s < sites.size(); ++s) {
       if (best[s].one.gain <= 0) continue;
       const SiteTerm term = std::exchange(best[s], {}).one.term;
-      evaluate(term, false);
+      to_.evaluate(term, false);
       rank_at(sites[s], term, best[s]);
     }
     for (size_t s = 0; s < sites.size(); ++s)
@@ -256,13 +187,13 @@ class Ranking {
   }
   /// An evaluated term.
   void rank_at(int site, SiteTerm term, Best& best) {
-    Eigen::MatrixXd columns = responses(term, site);
+    Eigen::MatrixXd columns = to_.responses(term, site);
     if (!columns.allFinite()) return;
     const Eigen::VectorXd energy = columns.colwise().squaredNorm().transpose();
-    columns -= basis_ * (basis_.transpose() * columns);
+    to_.leave_out_free(columns);
     for (Eigen::Index c = 0; c < columns.cols(); ++c)
       if (!(columns.col(c).squaredNorm() > least_energy * energy[c])) columns.col(c).setZero();
-    const double gain = explain(columns, term);
+    const double gain = to_.explain(columns, term);
     if (gain > best.one.gain) best.one.gain = gain, best.one.term = term;
     Constant& constant = constants_[size_t(site)];
     if (term.shape->of == TermShape::Of::nothing)
@@ -279,30 +210,11 @@ class Ranking {
     Eigen::MatrixXd both(column.rows(), 2);
     both << column, constant.column;
     SiteTerm joint = term;
-    const double gain = explain(both, joint);
+    const double gain = to_.explain(both, joint);
     if (gain < gain_of_one + least_gain_of_second || gain <= best.gain) return;
     best.gain = gain, best.constant = constant.term, best.term = joint;
     best.constant->coefficient[0] = joint.coefficient[1];
     best.term.coefficient[1] = 0;
-  }
-  /// Least squares of the remaining errors; the gain in -2 ln L.
-  double explain(const Eigen::MatrixXd& columns, SiteTerm& term) const {
-    const Eigen::VectorXd norm = columns.colwise().norm().transpose();
-    if (!(norm.maxCoeff() > 0)) return 0;
-    Eigen::VectorXd weight(norm.size());
-    for (Eigen::Index i = 0; i < norm.size(); ++i) weight[i] = norm[i] > 0 ? 1 / norm[i] : 0;
-    const Eigen::MatrixXd unit = columns * weight.asDiagonal();
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(unit.transpose() * unit);
-    const Eigen::VectorXd right = unit.transpose() * rest_;
-    Eigen::VectorXd coefficient = Eigen::VectorXd::Zero(norm.size());
-    for (Eigen::Index i = 0; i < norm.size(); ++i)
-      if (eigen.eigenvalues()[i] > 1e-6)
-        coefficient +=
-            eigen.eigenvectors().col(i) * (eigen.eigenvectors().col(i).dot(right) / eigen.eigenvalues()[i]);
-    const double before = rest_.squaredNorm(), after = (rest_ - unit * coefficient).squaredNorm();
-    coefficient = weight.asDiagonal() * coefficient;
-    for (Eigen::Index c = 0; c < norm.size(); ++c) term.coefficient[size_t(c)] = coefficient[c];
-    return double(pass_.readings) * std::log(before / std::max(after, 1e-12 * before));
   }
   /// A distortion of what is measured moves no state, so that its response is nearly linear.
   bool is_promising(const TermShape& shape, int site, int own, const std::vector<double>& values) {
@@ -310,10 +222,10 @@ class Ranking {
     for (const auto& start : shape.starts(values)) {
       if (start[0] == 0) continue;
       SiteTerm term = term_of(shape, own, values, start);
-      evaluate(term, false);
-      Eigen::MatrixXd column = responses(term, site);
-      column -= basis_ * (basis_.transpose() * column);
-      most = std::max(most, explain(column, term));
+      to_.evaluate(term, false);
+      Eigen::MatrixXd column = to_.responses(term, site);
+      to_.leave_out_free(column);
+      most = std::max(most, to_.explain(column, term));
     }
     return most > least_gain_of_second;
   }
@@ -322,7 +234,7 @@ class Ranking {
     const int own = fitter_.model().own_variable(site);
     if (own < 0 || is_there(shape, site, own)) return;
     if (fitter_.model().nearness(site, own) == Nearness::unusable) return;
-    const std::vector<double> values = signal(own);
+    const std::vector<double> values = to_.signal(own);
     if (is_sensor(site) && !is_promising(shape, site, own, values)) return;
     SiteCandidate best;
     for (const auto& start : shape.starts(values)) {
@@ -330,7 +242,7 @@ class Ranking {
       SiteHypothesis trial = at_;
       trial.terms.push_back(term_of(shape, own, values, start));
       trial.terms.back().site = site, trial.terms.back().coefficient[0] = 1;
-      const double gain = pass_.scaled_objective() - fitter_.scaled_objective_beside(trial, pass_);
+      const double gain = to_.pass().scaled_objective() - fitter_.scaled_objective_beside(trial, to_.pass());
       if (gain > best.gain) best.gain = gain, best.term = trial.terms.back();
     }
     if (best.gain <= 0) return;
@@ -338,18 +250,6 @@ class Ranking {
     list.push_back(best);
   }
 
-  /// The response of the whitened errors to a change of a recorded input, beside what is free already.
-  Eigen::MatrixXd response_of_input(int site, const InputLines& change) {
-    const SignalRecord& record = fitter_.model().record();
-    for (size_t k = 0; k < pass_.rows; ++k)
-      for (size_t part = 0; part < 3; ++part)
-        phi_[part][k] = change[k].value + change[k].slope * record.step(k) * double(part) / 2;
-    Eigen::MatrixXd column(Eigen::Index(pass_.error.size()), 1);
-    fitter_.filter().respond(pass_, site, phi_[0], phi_[1], phi_[2],
-                             {column.col(0).data(), pass_.error.size()});
-    column -= basis_ * (basis_.transpose() * column);
-    return column;
-  }
   /// An input that is held from row to row in the place of a curve acts half a sample later. That is a
   /// statement of the experiment, which is questioned as such.
   double gain_of_held(int site) {
@@ -359,7 +259,7 @@ class Ranking {
     const InputLines lines = lines_of(record, input);
     input.between_rows = BetweenRows::hold;
     SiteTerm ignored;
-    return explain(response_of_input(site, difference(lines_of(record, input), lines)), ignored);
+    return to_.explain(to_.response_of_input(site, difference(lines_of(record, input), lines)), ignored);
   }
   /// What a delay or a lag adds to an input is known from the record alone, so that the first values are
   /// judged by the response to it. As one adds in proportion to a short time, the share of the change that
@@ -378,7 +278,8 @@ class Ranking {
       term.shape = &shape, term.site = site, term.nonlinear = {samples * sample, before};
       term.low = {shortest * sample, std::min(least, 0.0)},
       term.high = {longest * sample, std::max(most, 0.0)};
-      const double gain = explain(response_of_input(site, fitter_.model().change_of_input(term)), term);
+      const double gain =
+          to_.explain(to_.response_of_input(site, fitter_.model().change_of_input(term)), term);
       const double share = term.coefficient[0];
       if (share < least_share || share > most_share || gain <= best.gain) continue;
       term.nonlinear[0] *= share, term.coefficient[0] = 1;
@@ -389,24 +290,18 @@ class Ranking {
     trial.terms.push_back(best.term);
     SitePass there;
     if (!fitter_.pass(trial, false, there)) return;
-    best.gain = pass_.scaled_objective() - there.scaled_objective();
+    best.gain = to_.pass().scaled_objective() - there.scaled_objective();
     best.cost = cost_of(fitter_.model(), best.term);
     if (best.gain > 0) list.push_back(best);
   }
 
   SiteFitter& fitter_;
   SiteHypothesis at_;
-  SitePass pass_;
+  TermResponses to_;
   const bool with_constants_;
   std::vector<Constant> constants_;  // of the sites
-  bool is_good_ = false;
   std::vector<bool> is_multiple_;
   std::vector<int> state_behind_;  // of each variable
-  Eigen::MatrixXd basis_;
-  Eigen::VectorXd rest_;
-  std::array<std::vector<double>, 3> phi_;    // at the start, middle and end of each sample
-  bool is_in_middle_alone_ = false;           // and then in the middle for all of it
-  std::array<double, most_columns> sizes_{};  // rms of the columns
 };
 
 }  // namespace
