@@ -32,8 +32,8 @@ void FlowSlopes::add_step(double length, double from, double to) {
 }
 
 /// With M = length F a step is X ← Φ X + length (Ψ₀ B u(0) + Ψ₁ B u(h/2) + B u(h) / 6), where
-///   Φ = I + M Ψ,   Ψ = I + M/2 + M²/6 + M³/24,   Ψ₀ = (I + M + M²/2 + M³/4) / 6,   Ψ₁ = (4 I + 2 M + M²/2)
-///   / 6.
+///   Φ = I + M Ψ,                         Ψ = I + M/2 + M²/6 + M³/24,
+///   Ψ₀ = (I + M + M²/2 + M³/4) / 6,      Ψ₁ = (4 I + 2 M + M²/2) / 6.
 template <int N> void FlowSlopes::add_step_of(double length, double from, double to) {
   using Matrix = Eigen::Matrix<double, N, N>;
   using Vector = Eigen::Matrix<double, N, 1>;
