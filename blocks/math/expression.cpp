@@ -3,11 +3,12 @@
 /// The formula may also use the parameters of the diagram that contains the block, with their units; a name
 /// in `names` hides a parameter of the same name. A parameter without a unit is a plain number.
 ///
-/// The formula is evaluated by muParser: + - * / ^, comparisons, && || !, c ? a : b, sin, cos, tan, asin,
-/// acos, atan, atan2, sinh, cosh, tanh, exp, ln, log2, log10, sqrt, abs, sign, rint, min, max, sum, avg;
-/// `pi`, and `_e` for Euler's number. Units are checked as in the expression of a parameter; π is a half
-/// cycle in radians. A variable-step solver does not locate the kinks and jumps of the formula; where that
-/// matters, use blocks instead. An infinite or NaN result stops the run.
+/// The formula is read by muParser, and computed as the list of what it would execute: + - * / ^,
+/// comparisons, && || !, c ? a : b, sin, cos, tan, asin, acos, atan, atan2, sinh, cosh, tanh, exp, ln, log2,
+/// log10, sqrt, abs, sign, rint, min, max, sum, avg; `pi`, and `_e` for Euler's number. Units are checked as
+/// in the expression of a parameter; π is a half cycle in radians. A variable-step solver does not locate the
+/// kinks and jumps of the formula; where that matters, use blocks instead. An infinite or NaN result stops
+/// the run.
 #include <fmt/format.h>
 #include <algorithm>
 #include "blocks/math/formula.h"
@@ -105,7 +106,7 @@ struct Expression {
     return result;
   }
   void prepare(double) {
-    if (!compiled.steps)
+    if (!compiled.is_compiled)
       compiled.compile(formula, all_names()), compiled.compute_in_steps(formula, all_names());
     for (size_t i = 0; i < constants.size(); ++i) compiled.arguments()[names.size() + i] = constants[i].value;
     compiled.keep_constant_from(names.size());

@@ -11,6 +11,7 @@ namespace loopwright::blocks {
 struct Formula {
   FormulaParser parser;
   std::vector<double> variables;
+  bool is_compiled = false;
   std::optional<FormulaSteps> steps;  ///< the same, several times faster, after compute_in_steps
   Formula() = default;
   Formula(const Formula&) {}
@@ -30,7 +31,7 @@ struct Formula {
     for (size_t i = 0; i < names.size(); ++i) parser.DefineVar(std::string(names[i]), &variables[i]);
     parser.set_formula(text);
     parser.Eval();  // compiles the formula, so that later calls do not allocate
-    steps.reset();
+    steps.reset(), is_compiled = true;
   }
   /// Of a compiled formula.
   void compute_in_steps(const std::string& text, const std::vector<std::string_view>& names) {

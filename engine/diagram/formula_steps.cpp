@@ -32,7 +32,7 @@ class FormulaNotes {
 
   double number(double value) {
     for (size_t i = steps_.variables_; i < steps_.values_.size(); ++i)
-      if (is_number(i) && std::bit_cast<uint64_t>(steps_.values_[i]) == std::bit_cast<uint64_t>(value))
+      if (std::bit_cast<uint64_t>(steps_.values_[i]) == std::bit_cast<uint64_t>(value) && is_number(i))
         return double(i);
     steps_.values_.push_back(value);
     return double(steps_.values_.size() - 1);
@@ -138,7 +138,7 @@ class NotingParser : public mu::Parser {
   }
 };
 
-/// Whether both compute the same bits. muParser joins some products and sums of numbers before it computes.
+/// Whether both compute the same bits at some values, at one of them a number.
 bool agree(FormulaSteps steps, const std::string& formula, const std::vector<std::string_view>& names) {
   constexpr double tried[] = {0.37, -1.9, 2.3e-4, 41.7, -0.61};
   std::vector<double> values(names.size());
@@ -146,15 +146,17 @@ bool agree(FormulaSteps steps, const std::string& formula, const std::vector<std
   parser.DefineConst("pi", std::numbers::pi);
   for (size_t i = 0; i < names.size(); ++i) parser.DefineVar(std::string(names[i]), &values[i]);
   parser.set_formula(formula);
+  bool is_number = false;
   for (size_t k = 0; k < std::size(tried); ++k) {
     for (size_t i = 0; i < values.size(); ++i)
       values[i] = steps.variables()[i] = tried[(k + i) % std::size(tried)] * double(1 + i / std::size(tried));
     steps.keep_constant_from(values.size());
     const double a = steps.value(), b = parser.Eval();
-    if (std::bit_cast<uint64_t>(a) != std::bit_cast<uint64_t>(b) && !(std::isnan(a) && std::isnan(b)))
-      return false;
+    if (std::isnan(a) && std::isnan(b)) continue;
+    if (std::bit_cast<uint64_t>(a) != std::bit_cast<uint64_t>(b)) return false;
+    is_number = true;
   }
-  return true;
+  return is_number;
 }
 
 }  // namespace

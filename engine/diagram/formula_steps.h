@@ -1,5 +1,7 @@
-/// A formula as the list of its operations, in the order in which muParser executes them: the same bits, but
-/// what occurs more than once is computed once, and what depends on constants alone before the run.
+/// A formula as the list of its operations, as they are written and in the order in which muParser executes
+/// them: what occurs more than once is computed once, and what depends on constants alone before the run.
+/// muParser joins some of its numbers first (x + 1 + 2 as x + 3, 2*x as 2*x + 0), which may change the last
+/// bit or the sign of a zero. A formula of which tried values differ is left to it.
 #pragma once
 #include <optional>
 #include <span>

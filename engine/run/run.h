@@ -100,6 +100,7 @@ template <class Real> class Run {
   void reuse_signals() { signals_are_current_ = accepts_.empty() && algebraic_loops_.empty(); }
   /// From here on derivatives_at and evaluate(0, false) do not call these blocks, one flag for each block of
   /// the plan: what reads them reads the values that their outputs have or are set to.
+  /// No block of an algebraic loop may be among them.
   void leave_out(const std::vector<bool>& blocks);
   bool crossings_at(double time, const double* x, double* value);
   /// Sets states and time; signals are not yet computed.

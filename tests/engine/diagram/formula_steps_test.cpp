@@ -77,6 +77,7 @@ TEST(FormulaSteps, FollowConstantsOnlyWhenTheyAreTold) {
 TEST(FormulaSteps, LeaveToTheParserWhatItComputesOtherwise) {
   EXPECT_EQ(by_parser("0*x", {-1, 0, 0}), 0);
   EXPECT_FALSE(FormulaSteps::of("0*x", names));
+  EXPECT_FALSE(FormulaSteps::of("sqrt(x - 1000)", names));  // no value that is tried is a number
 }
 
 // It computes one of the two, and the other one may stop it.
