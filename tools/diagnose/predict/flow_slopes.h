@@ -16,8 +16,8 @@ namespace loopwright::diagnosis {
 class FlowSlopes {
  public:
   /// For differences: what the states and what is added at these sites are changed by. Ramps are asked for.
-  void prepare(std::span<const double> states, std::vector<int> sites, std::vector<double> at_sites,
-               bool with_ramps);
+  void change(std::span<const double> states, std::vector<int> sites, std::vector<double> at_sites,
+              bool with_ramps);
   std::span<const double> changes_of_states() const { return state_changes_; }
   const std::vector<int>& sites() const { return sites_; }
   double change_at_site(size_t index) const { return site_changes_[index]; }
@@ -30,8 +30,7 @@ class FlowSlopes {
   /// Of the right-hand side in the middle of a step, to be set before the step is added.
   auto by_state(size_t state) { return F_.col(Eigen::Index(state)); }
   auto by_site(size_t index) { return B_.col(Eigen::Index(index)); }
-  /// A step of this length in s, from a part of the sample to another one. One that is longer than the method
-  /// is stable to, or not finite, gives up.
+  /// A step of this length in s, from a part of the sample to another one.
   void add_step(double length, double from, double to);
 
   /// Of the last states by the first ones, by what is held at a site, and by what rises there from -1 to 1.
@@ -40,8 +39,6 @@ class FlowSlopes {
   auto by_ramp(size_t index) const { return ramp_.col(Eigen::Index(index)); }
 
  private:
-  /// By how much a step changes the states at most, in units of what they are changed by: the norm of h F.
-  double size_of_step(double length) const;
   template <int N> void add_step_of(double length, double from, double to);
 
   std::vector<double> state_changes_, site_changes_;

@@ -5,8 +5,7 @@
 /// inverted:
 ///   e = y - h(x̂) - C δ,   S = C P Cᵀ + R,   K = P Cᵀ / S,   δ += K e,   P -= K S Kᵀ
 ///   x̂ ← flow(x̂ + δ),   P ← A P Aᵀ + Σ σ² G Gᵀ
-/// with A, C and G (the effect of a unit at a site, held over the sample) by differences: in the middle of
-/// each step of the integration (flow_slopes.h), or of the whole sample where that is not smooth enough.
+/// with A, C and G (the effect of a unit at a site, held over the sample) by differences of the model.
 #pragma once
 #include <Eigen/Dense>
 #include <array>
@@ -149,7 +148,6 @@ class SiteFilter {
   void take_slopes(size_t row, SitePass& pass);
   /// What differences are taken with.
   void choose_changes(const SiteNoise& noise, const SitePass& pass);
-  /// The path at the row.
   bool look_along(size_t row, SitePass& pass);
   bool respond_to(int site, bool ramp, size_t row, SitePass& pass, std::span<double> to);
   /// A flow from other states or with other signals, from the modes of this row.

@@ -38,13 +38,13 @@ bool SiteFilter::slopes_of_outputs(size_t row, SitePass& pass) {
   moved_ = x_;
   model_.keep_modes(row, modes_.data());
   for (size_t i = 0; i < model_states_; ++i) {
-    const auto is_finite_with = [&](double length) {
-      moved_[Eigen::Index(i)] = x_[Eigen::Index(i)] + length * difference_step * state_scale_[i];
-      model_.put_modes_back(row, modes_.data());
-      return model_.outputs(row, moved_.data(), y_moved_.data()) &&
-             std::ranges::all_of(y_moved_, [](double y) { return std::isfinite(y); });
-    };
-    const double change = difference_step * state_scale_[i] * first_finite(is_finite_with);
+    const double change = difference_step * state_scale_[i] * first_finite([&](double length) {
+                            moved_[Eigen::Index(i)] =
+                                x_[Eigen::Index(i)] + length * difference_step * state_scale_[i];
+                            model_.put_modes_back(row, modes_.data());
+                            return model_.outputs(row, moved_.data(), y_moved_.data()) &&
+                                   std::ranges::all_of(y_moved_, [](double y) { return std::isfinite(y); });
+                          });
     if (change == 0) return false;
     moved_[Eigen::Index(i)] = x_[Eigen::Index(i)];
     for (size_t j = 0; j < pass.outputs; ++j)
@@ -102,7 +102,7 @@ void SiteFilter::choose_changes(const SiteNoise& noise, const SitePass& pass) {
       if (model_.output_of_sensor(site) < 0) sites.push_back(site);
   }
   for (int site : sites) at_sites.push_back(site_scale_[size_t(site)]);
-  slopes_.prepare(of_states, std::move(sites), std::move(at_sites), pass.has_columns);
+  slopes_.change(of_states, std::move(sites), std::move(at_sites), pass.has_columns);
 }
 
 void SiteFilter::take_slopes(size_t row, SitePass& pass) {
@@ -133,11 +133,11 @@ bool SiteFilter::differences(size_t row, const SiteNoise& noise, SitePass& pass)
   moved_ = x_, moved_next_ = next_;
   Map(&pass.A[row * n * n], Eigen::Index(n * n)).setZero();
   for (size_t i = 0; i < model_states_; ++i) {
-    const auto is_finite_with = [&](double length) {
-      moved_[Eigen::Index(i)] = x_[Eigen::Index(i)] + length * difference_step * state_scale_[i];
-      return try_flow(row, pass, moved_.data(), moved_next_.data());
-    };
-    const double change = difference_step * state_scale_[i] * first_finite(is_finite_with);
+    const double change = difference_step * state_scale_[i] * first_finite([&](double length) {
+                            moved_[Eigen::Index(i)] =
+                                x_[Eigen::Index(i)] + length * difference_step * state_scale_[i];
+                            return try_flow(row, pass, moved_.data(), moved_next_.data());
+                          });
     if (change == 0) return false;
     moved_[Eigen::Index(i)] = x_[Eigen::Index(i)];
     Map(&pass.A[(row * n + i) * n], Eigen::Index(n)) = (moved_next_ - next_) / change;

@@ -172,9 +172,8 @@ class Ranking {
       for (size_t s = 0; s < sites.size(); ++s) rank_at(sites[s], term, best[s]);
     }
     for (size_t s = 0; are_many && s < sites.size(); ++s) {
-      const Best coarse = std::exchange(best[s], {});
-      if (coarse.one.gain <= 0) continue;
-      const SiteTerm& term = coarse.one.term;
+      if (best[s].one.gain <= 0) continue;
+      const SiteTerm term = std::exchange(best[s], {}).one.term;
       to_.evaluate(term, false);
       rank_at(sites[s], term, best[s]);
     }
