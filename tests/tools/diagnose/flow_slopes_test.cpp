@@ -16,7 +16,7 @@ Slopes slopes_at(SiteModel& model, size_t row, const std::vector<int>& sites) {
   Slopes s;
   s.from = model.initial_states(row), s.to.resize(s.from.size());
   for (size_t i = 0; i < s.from.size(); ++i) s.from[i] += 0.3 + 0.1 * double(i);  // not at rest
-  s.of.change(std::vector(s.from.size(), change), sites, std::vector(sites.size(), change), true);
+  s.of.prepare(std::vector(s.from.size(), change), sites, std::vector(sites.size(), change), true);
   EXPECT_TRUE(model.flow(row, s.from.data(), s.to.data(), nullptr, &s.of));
   EXPECT_TRUE(s.of.is_known());
   return s;

@@ -14,8 +14,8 @@ template <class Matrix> Matrix product(const Matrix& a, const Matrix& b) {
 
 }  // namespace
 
-void FlowSlopes::change(std::span<const double> states, std::vector<int> sites, std::vector<double> at_sites,
-                        bool with_ramps) {
+void FlowSlopes::prepare(std::span<const double> states, std::vector<int> sites, std::vector<double> at_sites,
+                         bool with_ramps) {
   state_changes_.assign(states.begin(), states.end());
   sites_ = std::move(sites), site_changes_ = std::move(at_sites), has_ramps_ = with_ramps;
   const auto n = Eigen::Index(state_changes_.size()), count = Eigen::Index(sites_.size());
@@ -32,8 +32,8 @@ void FlowSlopes::add_step(double length, double from, double to) {
 }
 
 /// With M = length F a step is X ← Φ X + length (Ψ₀ B u(0) + Ψ₁ B u(h/2) + B u(h) / 6), where
-///   Φ = I + M Ψ,   Ψ = I + M/2 + M²/6 + M³/24,   Ψ₀ = (I + M + M²/2 + M³/4) / 6,   Ψ₁ = (4 I + 2 M + M²/2)
-///   / 6.
+///   Φ = I + M Ψ,                       Ψ = I + M/2 + M²/6 + M³/24,
+///   Ψ₀ = (I + M + M²/2 + M³/4) / 6,    Ψ₁ = (4 I + 2 M + M²/2) / 6.
 template <int N> void FlowSlopes::add_step_of(double length, double from, double to) {
   using Matrix = Eigen::Matrix<double, N, N>;
   using Vector = Eigen::Matrix<double, N, 1>;

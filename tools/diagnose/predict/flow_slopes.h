@@ -7,7 +7,6 @@
 /// that differences of whole samples need.
 #pragma once
 #include <Eigen/Dense>
-#include <array>
 #include <span>
 #include <vector>
 
@@ -16,8 +15,8 @@ namespace loopwright::diagnosis {
 class FlowSlopes {
  public:
   /// For differences: what the states and what is added at these sites are changed by. Ramps are asked for.
-  void change(std::span<const double> states, std::vector<int> sites, std::vector<double> at_sites,
-              bool with_ramps);
+  void prepare(std::span<const double> states, std::vector<int> sites, std::vector<double> at_sites,
+               bool with_ramps);
   std::span<const double> changes_of_states() const { return state_changes_; }
   const std::vector<int>& sites() const { return sites_; }
   double change_at_site(size_t index) const { return site_changes_[index]; }

@@ -148,6 +148,7 @@ class SiteFilter {
   void take_slopes(size_t row, SitePass& pass);
   /// What differences are taken with.
   void choose_changes(const SiteNoise& noise, const SitePass& pass);
+  /// The path at the row.
   bool look_along(size_t row, SitePass& pass);
   bool respond_to(int site, bool ramp, size_t row, SitePass& pass, std::span<double> to);
   /// A flow from other states or with other signals, from the modes of this row.

@@ -102,7 +102,7 @@ void SiteFilter::choose_changes(const SiteNoise& noise, const SitePass& pass) {
       if (model_.output_of_sensor(site) < 0) sites.push_back(site);
   }
   for (int site : sites) at_sites.push_back(site_scale_[size_t(site)]);
-  slopes_.change(of_states, std::move(sites), std::move(at_sites), pass.has_columns);
+  slopes_.prepare(of_states, std::move(sites), std::move(at_sites), pass.has_columns);
 }
 
 void SiteFilter::take_slopes(size_t row, SitePass& pass) {

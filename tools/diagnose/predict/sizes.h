@@ -5,27 +5,12 @@
 namespace loopwright::diagnosis {
 
 /// f.operator()<N>() with N states, or Eigen::Dynamic if there are many.
-template <class F> auto with_size(size_t states, F&& f) {
-  switch (states) {
-    case 1:
-      return f.template operator()<1>();
-    case 2:
-      return f.template operator()<2>();
-    case 3:
-      return f.template operator()<3>();
-    case 4:
-      return f.template operator()<4>();
-    case 5:
-      return f.template operator()<5>();
-    case 6:
-      return f.template operator()<6>();
-    case 7:
-      return f.template operator()<7>();
-    case 8:
-      return f.template operator()<8>();
-    default:
-      return f.template operator()<Eigen::Dynamic>();
-  }
+template <int N = 1, class F> auto with_size(size_t states, F&& f) {
+  constexpr int most = 8;
+  if constexpr (N > most)
+    return f.template operator()<Eigen::Dynamic>();
+  else
+    return states == N ? f.template operator()<N>() : with_size<N + 1>(states, f);
 }
 
 /// Calls f<states, ports>() with the sizes of usual axes: measured by velocity, by position, or by both; with

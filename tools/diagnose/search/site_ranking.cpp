@@ -25,12 +25,15 @@ bool is_plain(const TermShape& shape) {
 class Ranking {
  public:
   Ranking(SiteFitter& fitter, SiteHypothesis hypothesis, bool with_constants)
-      : fitter_(fitter), at_(std::move(hypothesis)), to_(fitter, at_), with_constants_(with_constants) {
-    if (to_.is_good()) find_multiples();
+      : fitter_(fitter),
+        at_(std::move(hypothesis)),
+        responses_(fitter, at_),
+        with_constants_(with_constants) {
+    if (responses_.is_good()) find_multiples();
   }
 
   std::vector<SiteCandidate> run(std::span<const TermShape> shapes) {
-    if (!to_.is_good()) return {};
+    if (!responses_.is_good()) return {};
     const SiteModel& model = fitter_.model();
     constants_.resize(model.sites().size());
     Lists lists(model.sites().size());
@@ -61,7 +64,7 @@ class Ranking {
   }
 
   std::vector<SiteCandidate> run_at(std::span<const TermShape> shapes, int site, int variable) {
-    if (!to_.is_good()) return {};
+    if (!responses_.is_good()) return {};
     constants_.resize(fitter_.model().sites().size());
     Lists lists(constants_.size());
     for (const TermShape& shape : shapes) rank(shape, {site}, variable, lists);
@@ -84,7 +87,7 @@ class Ranking {
     for (const bool states : {true, false})
       for (size_t v = 0; v < variables.size(); ++v) {
         if (variables[v].is_state != states) continue;
-        const std::vector<double> values = to_.signal(int(v));
+        const std::vector<double> values = responses_.signal(int(v));
         const Eigen::Map<const Eigen::VectorXd> along(values.data(), Eigen::Index(values.size()));
         const double size = along.norm();
         is_multiple_[v] = !(size > 0) || std::ranges::any_of(directions, [&](const auto& known) {
@@ -92,13 +95,15 @@ class Ranking {
         });
         if (!is_multiple_[v]) directions.push_back(along / size);
       }
-    state_behind_ = states_behind(fitter_.model(), to_.pass());
+    state_behind_ = states_behind(fitter_.model(), responses_.pass());
   }
   bool acts(int site) const {
     if (is_sensor(site)) return true;
-    for (size_t k = 0; k < to_.pass().rows; ++k)
-      for (size_t i = 0; i < to_.pass().states; ++i)
-        if (to_.pass().G[(k * to_.pass().sites + size_t(site)) * to_.pass().states + i] != 0) return true;
+    for (size_t k = 0; k < responses_.pass().rows; ++k)
+      for (size_t i = 0; i < responses_.pass().states; ++i)
+        if (responses_.pass()
+                .G[(k * responses_.pass().sites + size_t(site)) * responses_.pass().states + i] != 0)
+          return true;
     return false;
   }
   /// A recorded input or the output of a filter: a term there depends on the signal itself. Others act at a
@@ -133,6 +138,7 @@ class Ranking {
     if (shape.nonlinear[0] == "level" && state_behind_[size_t(variable)] != variable) return false;
     return shape.fits(model.sites()[size_t(site)].quantity, model.variables()[size_t(variable)].quantity);
   }
+  /// At any site.
   SiteTerm term_of(const TermShape& shape, int variable, const std::vector<double>& values,
                    const std::array<double, most_nonlinear>& start) const {
     SiteTerm term;
@@ -159,22 +165,22 @@ class Ranking {
   void rank(const TermShape& shape, std::vector<int> sites, int variable, Lists& lists) {
     std::erase_if(sites, [&](int site) { return is_there(shape, site, variable); });
     if (sites.empty()) return;
-    const std::vector<double> values = to_.signal(variable);
+    const std::vector<double> values = responses_.signal(variable);
     std::vector<std::array<double, most_nonlinear>> starts{{}};
     if (shape.starts) starts = shape.starts(values);
     if (shape.starts) std::erase_if(starts, [](const auto& start) { return start[0] == 0 && start[1] == 0; });
-    const bool are_many =
-        starts.size() > most_starts;  // they are compared by the middle of each sample first
+    // They are compared by the middle of each sample first.
+    const bool are_many = starts.size() > most_starts;
     std::vector<Best> best(sites.size());
     for (const auto& start : starts) {
       const SiteTerm term = term_of(shape, variable, values, start);
-      to_.evaluate(term, are_many);
+      responses_.evaluate(term, are_many);
       for (size_t s = 0; s < sites.size(); ++s) rank_at(sites[s], term, best[s]);
     }
     for (size_t s = 0; are_many && s < sites.size(); ++s) {
       if (best[s].one.gain <= 0) continue;
       const SiteTerm term = std::exchange(best[s], {}).one.term;
-      to_.evaluate(term, false);
+      responses_.evaluate(term, false);
       rank_at(sites[s], term, best[s]);
     }
     for (size_t s = 0; s < sites.size(); ++s)
@@ -187,13 +193,13 @@ class Ranking {
   }
   /// An evaluated term.
   void rank_at(int site, SiteTerm term, Best& best) {
-    Eigen::MatrixXd columns = to_.responses(term, site);
+    Eigen::MatrixXd columns = responses_.responses(term, site);
     if (!columns.allFinite()) return;
     const Eigen::VectorXd energy = columns.colwise().squaredNorm().transpose();
-    to_.leave_out_free(columns);
+    responses_.leave_out_free(columns);
     for (Eigen::Index c = 0; c < columns.cols(); ++c)
       if (!(columns.col(c).squaredNorm() > least_energy * energy[c])) columns.col(c).setZero();
-    const double gain = to_.explain(columns, term);
+    const double gain = responses_.explain(columns, term);
     if (gain > best.one.gain) best.one.gain = gain, best.one.term = term;
     Constant& constant = constants_[size_t(site)];
     if (term.shape->of == TermShape::Of::nothing)
@@ -210,7 +216,7 @@ class Ranking {
     Eigen::MatrixXd both(column.rows(), 2);
     both << column, constant.column;
     SiteTerm joint = term;
-    const double gain = to_.explain(both, joint);
+    const double gain = responses_.explain(both, joint);
     if (gain < gain_of_one + least_gain_of_second || gain <= best.gain) return;
     best.gain = gain, best.constant = constant.term, best.term = joint;
     best.constant->coefficient[0] = joint.coefficient[1];
@@ -222,10 +228,10 @@ class Ranking {
     for (const auto& start : shape.starts(values)) {
       if (start[0] == 0) continue;
       SiteTerm term = term_of(shape, own, values, start);
-      to_.evaluate(term, false);
-      Eigen::MatrixXd column = to_.responses(term, site);
-      to_.leave_out_free(column);
-      most = std::max(most, to_.explain(column, term));
+      responses_.evaluate(term, false);
+      Eigen::MatrixXd column = responses_.responses(term, site);
+      responses_.leave_out_free(column);
+      most = std::max(most, responses_.explain(column, term));
     }
     return most > least_gain_of_second;
   }
@@ -234,7 +240,7 @@ class Ranking {
     const int own = fitter_.model().own_variable(site);
     if (own < 0 || is_there(shape, site, own)) return;
     if (fitter_.model().nearness(site, own) == Nearness::unusable) return;
-    const std::vector<double> values = to_.signal(own);
+    const std::vector<double> values = responses_.signal(own);
     if (is_sensor(site) && !is_promising(shape, site, own, values)) return;
     SiteCandidate best;
     for (const auto& start : shape.starts(values)) {
@@ -242,7 +248,8 @@ class Ranking {
       SiteHypothesis trial = at_;
       trial.terms.push_back(term_of(shape, own, values, start));
       trial.terms.back().site = site, trial.terms.back().coefficient[0] = 1;
-      const double gain = to_.pass().scaled_objective() - fitter_.scaled_objective_beside(trial, to_.pass());
+      const double gain =
+          responses_.pass().scaled_objective() - fitter_.scaled_objective_beside(trial, responses_.pass());
       if (gain > best.gain) best.gain = gain, best.term = trial.terms.back();
     }
     if (best.gain <= 0) return;
@@ -259,7 +266,8 @@ class Ranking {
     const InputLines lines = lines_of(record, input);
     input.between_rows = BetweenRows::hold;
     SiteTerm ignored;
-    return to_.explain(to_.response_of_input(site, difference(lines_of(record, input), lines)), ignored);
+    return responses_.explain(responses_.response_of_input(site, difference(lines_of(record, input), lines)),
+                              ignored);
   }
   /// What a delay or a lag adds to an input is known from the record alone, so that the first values are
   /// judged by the response to it. As one adds in proportion to a short time, the share of the change that
@@ -279,7 +287,7 @@ class Ranking {
       term.low = {shortest * sample, std::min(least, 0.0)},
       term.high = {longest * sample, std::max(most, 0.0)};
       const double gain =
-          to_.explain(to_.response_of_input(site, fitter_.model().change_of_input(term)), term);
+          responses_.explain(responses_.response_of_input(site, fitter_.model().change_of_input(term)), term);
       const double share = term.coefficient[0];
       if (share < least_share || share > most_share || gain <= best.gain) continue;
       term.nonlinear[0] *= share, term.coefficient[0] = 1;
@@ -290,14 +298,14 @@ class Ranking {
     trial.terms.push_back(best.term);
     SitePass there;
     if (!fitter_.pass(trial, false, there)) return;
-    best.gain = to_.pass().scaled_objective() - there.scaled_objective();
+    best.gain = responses_.pass().scaled_objective() - there.scaled_objective();
     best.cost = cost_of(fitter_.model(), best.term);
     if (best.gain > 0) list.push_back(best);
   }
 
   SiteFitter& fitter_;
   SiteHypothesis at_;
-  TermResponses to_;
+  TermResponses responses_;
   const bool with_constants_;
   std::vector<Constant> constants_;  // of the sites
   std::vector<bool> is_multiple_;

@@ -40,7 +40,6 @@ std::vector<double> TermResponses::signal(int variable) const {
     values[k] = fitter_.model().variables()[size_t(variable)].at(&pass_.path[0][k * pass_.numbers]);
   return values;
 }
-/// At any site.
 
 void TermResponses::evaluate(const SiteTerm& term, bool in_middle_alone) {
   const SiteVariable none;
