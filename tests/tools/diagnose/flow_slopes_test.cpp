@@ -12,11 +12,15 @@ struct Slopes {
   std::vector<double> from, to;
 };
 
-Slopes slopes_at(SiteModel& model, size_t row, const std::vector<int>& sites) {
+/// `sizes` of the states, by which they are changed in proportion.
+Slopes slopes_at(SiteModel& model, size_t row, const std::vector<int>& sites,
+                 const std::vector<double>& sizes) {
   Slopes s;
   s.from = model.initial_states(row), s.to.resize(s.from.size());
   for (size_t i = 0; i < s.from.size(); ++i) s.from[i] += 0.3 + 0.1 * double(i);  // not at rest
-  s.of.prepare(std::vector(s.from.size(), change), sites, std::vector(sites.size(), change), true);
+  std::vector<double> changes;
+  for (double size : sizes) changes.push_back(change * size);
+  s.of.prepare(changes, sites, std::vector(sites.size(), change), true);
   EXPECT_TRUE(model.flow(row, s.from.data(), s.to.data(), nullptr, &s.of));
   EXPECT_TRUE(s.of.is_known());
   return s;
@@ -36,12 +40,12 @@ void expect_alike(const Column& column, const std::vector<double>& expected, dou
   for (size_t i = 0; i < expected.size(); ++i)
     EXPECT_NEAR(column[Eigen::Index(i)], expected[i], tolerance * size);
 }
-void expect_derivatives(SiteModel& model, double tolerance) {
+void expect_derivatives(SiteModel& model, const std::vector<double>& sizes, double tolerance) {
   constexpr size_t row = 7;
   std::vector<int> sites;
   for (int s = 0; s < int(model.sites().size()); ++s)
     if (model.output_of_sensor(s) < 0) sites.push_back(s);
-  const Slopes s = slopes_at(model, row, sites);
+  const Slopes s = slopes_at(model, row, sites, sizes);
   for (size_t i = 0; i < s.from.size(); ++i) {
     std::vector<double> moved = s.from;
     moved[i] += change;
@@ -63,14 +67,25 @@ TEST(FlowSlopes, OfALinearPlantAreItsDerivatives) {
   SiteModel model(files.diagram(), {files.experiment()}, {});
   for (int substeps : {1, 3}) {
     model.set_substeps(substeps);
-    expect_derivatives(model, 1e-6);
+    expect_derivatives(model, {3, 10, 100}, 1e-6);  // A, rad, rad/s
   }
 }
 // The curvature of a square root within a sample is left out.
 TEST(FlowSlopes, OfTanksAreNearlyTheirDerivatives) {
   const RecordedPlant files(tanks({}, 1));
   SiteModel model(files.diagram(), {files.experiment()}, {});
-  expect_derivatives(model, 2e-3);
+  expect_derivatives(model, {1, 1}, 2e-3);
+}
+// A friction that is steep in the middle of a step is not as steep along it.
+TEST(FlowSlopes, OfAStepBeyondWhatTheMethodIsStableToAreNotKnown) {
+  for (const double rate : {-1000.0, -4000.0}) {  // [1/s]
+    FlowSlopes slopes;
+    slopes.prepare(std::vector{1e-6}, {}, {}, false);
+    slopes.begin();
+    slopes.by_state(0)[0] = rate;
+    slopes.add_step(1e-3, 0, 1);
+    EXPECT_EQ(slopes.is_known(), rate == -1000.0);
+  }
 }
 
 }  // namespace

@@ -29,7 +29,8 @@ class FlowSlopes {
   /// Of the right-hand side in the middle of a step, to be set before the step is added.
   auto by_state(size_t state) { return F_.col(Eigen::Index(state)); }
   auto by_site(size_t index) { return B_.col(Eigen::Index(index)); }
-  /// A step of this length in s, from a part of the sample to another one.
+  /// A step of this length in s, from a part of the sample to another one. One that is longer than the method
+  /// is stable to, or not finite, gives up.
   void add_step(double length, double from, double to);
 
   /// Of the last states by the first ones, by what is held at a site, and by what rises there from -1 to 1.
@@ -38,6 +39,8 @@ class FlowSlopes {
   auto by_ramp(size_t index) const { return ramp_.col(Eigen::Index(index)); }
 
  private:
+  /// By how much a step changes the states at most, in units of what they are changed by: the norm of h F.
+  double size_of_step(double length) const;
   template <int N> void add_step_of(double length, double from, double to);
 
   std::vector<double> state_changes_, site_changes_;

@@ -19,6 +19,7 @@ std::vector<SiteHypothesis> function_in_names(SiteFitter& fitter, const SiteHypo
   ranked.resize(std::min(distortions, ranked.size()));
   std::vector<SiteHypothesis> list;
   for (const SiteHypothesis& distorted : fits(rest, ranked)) {
+    list.push_back(distorted);
     std::vector<SiteCandidate> second = rank_terms(fitter, distorted, fitter.shapes());
     leave_out_twins(second);
     second.resize(std::min(beside_each, second.size()));

@@ -232,9 +232,11 @@ void SiteFitter::refine(SiteHypothesis& h, int steps) {
 
 /// The best noise about a pass, from a first one.
 SiteNoise SiteFitter::best_noise(const SitePass& pass, const SiteNoise& from) const {
-  constexpr double widest = 12;     // e-fold changes within one search
-  constexpr double settled = 0.002;  // [in -2 ln L] Smaller improvements end a search,
-  constexpr double notable = 1;     // and larger ones begin another.
+  constexpr double widest = 12;        // e-fold changes within one search
+  constexpr double settled = 0.002;    // [in -2 ln L] Smaller improvements end a search,
+  constexpr double same_noise = 1e-3;  // [e-folds] and so do smaller steps.
+  constexpr double notable = 1;        // [in -2 ln L] Larger improvements begin another.
+  constexpr double far_off = 1e4;      // [in -2 ln L] What is worse, or not finite, counts as so much worse.
   constexpr int most_rounds = 6;
   const SiteNoise guess = filter_.guess_noise();
   SiteNoise noise = from;
@@ -251,28 +253,34 @@ SiteNoise SiteFitter::best_noise(const SitePass& pass, const SiteNoise& from) co
     return noise;
   };
   using Objective = std::function<double(const std::vector<double>&)>;
+  double most = 1e100;
   Objective objective = [&](const std::vector<double>& at) {
-    return std::min(filter_.objective_with(pass, noise_at(at)), 1e100);
+    return std::min(filter_.objective_with(pass, noise_at(at)), most);
   };
-  std::vector<double> x(count, 0.0);
-  double reached = objective(x);
+  std::vector<double> best(count, 0.0);
+  double reached = objective(best);
+  most = reached + far_off;
   // Quadratic models follow a valley to where its curvature is another one: they are begun anew there.
-  for (int round = 0; round < most_rounds; ++round) {
-    nlopt::opt search(nlopt::LN_BOBYQA, unsigned(count));
+  for (int round = 0; round < most_rounds && !is_interrupted_(); ++round) {
+    nlopt::opt search(count > 1 ? nlopt::LN_BOBYQA : nlopt::LN_SBPLX, unsigned(count));
     search.set_min_objective([](const std::vector<double>& at, std::vector<double>&,
                                 void* f) { return (*static_cast<Objective*>(f))(at); },
                              &objective);
-    search.set_lower_bounds(-widest), search.set_upper_bounds(widest);
-    search.set_initial_step(1.0), search.set_ftol_abs(settled), search.set_maxeval(int(40 * count));
-    const double before = reached;
+    search.set_lower_bounds(-widest), search.set_upper_bounds(widest), search.set_initial_step(1.0);
+    search.set_ftol_abs(settled), search.set_xtol_abs(same_noise), search.set_maxeval(int(40 * count));
+    std::vector<double> x = best;
+    double there = reached;
     try {
-      search.optimize(x, reached);
+      search.optimize(x, there);
     } catch (const nlopt::roundoff_limited&) {  // x is the best point so far
-      reached = objective(x);
+      there = objective(x);
     }
-    if (!(before - reached > notable)) break;
+    const double gained = reached - there;
+    if (!(gained > 0)) break;
+    best = x, reached = there;
+    if (!(gained > notable)) break;
   }
-  return noise_at(x);
+  return noise_at(best);
 }
 
 /// With every component as large as the largest, in proportion to what it does. Nothing if none had vanished.

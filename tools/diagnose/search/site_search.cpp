@@ -222,14 +222,17 @@ class SiteSearch : SimplerAnswers {
   }
 
   /// Puts two names in the place of a function without one, where they explain more with fewer numbers. Names
-  /// that explain less are no reason: sums of laws resemble any function.
+  /// that explain less are no reason: sums of laws resemble any function. A single name is judged as in
+  /// exchange().
   bool name_function(SiteHypothesis& at) {
     if (at.terms.size() >= most_terms || is_spent(criteria::work_with_rivals)) return false;
     const double before = criterion(at);
+    const size_t terms = at.terms.size();
     const auto fit = [&](const auto& h, auto list) { return fits(h, list); };
     for (const SiteHypothesis& named : function_in_names(fitter_, at, fit)) {
       tell("in the place of the function: " + describe(model(), named.terms.back()), named);
-      if (named.objective < at.objective && criterion(named) < criterion(at) - least_exchange)
+      const bool is_one = named.terms.size() == terms;
+      if ((is_one || named.objective < at.objective) && criterion(named) < criterion(at) - least_exchange)
         take(at, named, "names do better");
     }
     return criterion(at) < before;
