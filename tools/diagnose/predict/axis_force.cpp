@@ -89,7 +89,7 @@ Eigen::VectorXd AxisModel::inner_states_after_sample(double position, double vel
   for (size_t i = 0; i < inner_states_.size(); ++i)
     numbers_[plan_->signals + inner_states_[i]] = from[Eigen::Index(i)];
   place(position, velocity);
-  step(input, 0);
+  step_run(input, 0);
   Eigen::VectorXd next(from.size());
   for (size_t i = 0; i < inner_states_.size(); ++i) next[Eigen::Index(i)] = state(inner_states_[i]);
   return next;
@@ -127,7 +127,7 @@ double AxisModel::net_force_at_rest(double position, double velocity, double inp
   if (!inner_states_.empty())
     let_inner_states_rest(position, velocity, input);
   else if (input_is_filtered_)
-    for (int sample = 0; sample < samples_to_settle; ++sample) place(position, velocity), step(input, 0);
+    for (int sample = 0; sample < samples_to_settle; ++sample) place(position, velocity), step_run(input, 0);
   return net_force_along(position, velocity, input, force);
 }
 

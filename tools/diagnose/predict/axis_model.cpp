@@ -157,6 +157,7 @@ AxisModel::AxisModel(const std::string& path, const std::string& experiment_path
   if (steps_a_sample_ != steps) driving_force_ = force_of_input();
   relate_force_to_input(force_unit);
   keep_seen_states(linear);
+  is_affine_ = is_affine_along_record();
   nominal_inertia_ = linear.inertia, nominal_damping_ = linear.damping;
   if (std::isfinite(nominal_inertia_) && nominal_inertia_ > 0) return;
   if (velocity_ < 0) {
@@ -242,7 +243,7 @@ void AxisModel::keep_seen_states(const LinearAxis& linear) {
 bool AxisModel::set_added_inertia(double added) {
   double* parameter = inertia_parameter_.empty() ? nullptr : run_->parameter(inertia_parameter_);
   if (!parameter) return false;
-  if (*parameter != own_inertia_ + added) linearized_.reset();
+  if (*parameter != own_inertia_ + added) linearized_.reset(), affine_.reset();
   *parameter = own_inertia_ + added;
   return true;
 }
@@ -257,6 +258,7 @@ bool AxisModel::set_noise_enters_at_input(bool enters) {
 }
 
 void AxisModel::start(std::optional<double> position, double velocity) {
+  if (is_affine_ && !affine_) affine_ = affine_sample();
   run_->reset({plan_->seed, 0});
   place(position.value_or(this->position()), velocity);
 }
@@ -264,14 +266,6 @@ void AxisModel::start(std::optional<double> position, double velocity) {
 void AxisModel::place(double position, double velocity) {
   if (position_ >= plan_->signals) numbers_[position_] = position;
   if (velocity_ >= plan_->signals) numbers_[velocity_] = velocity;
-}
-
-void AxisModel::step(double input, double force, double duration) {
-  numbers_[input_] = input;
-  numbers_[injected_] = force;
-  const int64_t end = run_->now().tick + std::max<int64_t>(1, std::llround(duration * sample_ticks_));
-  while (run_->now().tick < end) run_->step_fixed(end, false, [] {});
-  if (all_outputs_) run_->evaluate(0, true);
 }
 
 double AxisModel::position() const { return position_ < 0 ? 0 : numbers_[position_]; }

@@ -11,6 +11,7 @@
 #include <string>
 #include "engine/diagram/diagram.h"
 #include "engine/plan/plan.h"
+#include "tools/diagnose/predict/affine_sample.h"
 #include "tools/diagnose/record/axis_record.h"
 #include "tools/effects/switched_effect.h"
 
@@ -79,6 +80,8 @@ class AxisModel {
   const AxisRecord& record() const { return record_; }
   const Plan& plan() const { return *plan_; }
   bool has_position() const { return position_ >= 0; }
+  /// Whether the diagram is linear but for constants, wherever the record leads it.
+  bool is_affine() const { return is_affine_; }
   /// [force] The force produced by the recorded input, row by row: loopwright::driving_force().
   const std::vector<double>& driving_force() const { return driving_force_; }
   /// [force/input] The gain that fits the driving force best.
@@ -101,7 +104,7 @@ class AxisModel {
   /// Back to the start: velocity and, if given, position; everything else at the diagram's initial values.
   void start(std::optional<double> position, double velocity);
   /// Advances by a sample, or `duration` sample times, with held input and held force (added to the force
-  /// role; pushes forward).
+  /// role; pushes forward). A sample of an affine diagram is a sum of products, see AffineSample.
   void step(double input, double force, double duration = 1);
   double position() const;
   double velocity() const;
@@ -151,6 +154,9 @@ class AxisModel {
   LinearAxis shorten_steps(const Plan& plan);
   LinearAxis linearize_motion();
   void keep_seen_states(const LinearAxis& linear);
+  void step_run(double input, double force, double duration = 1);
+  AffineSample affine_sample();
+  bool is_affine_along_record();
   Eigen::VectorXd sample_from(const Eigen::VectorXd& states, double input, double force);
 
   std::shared_ptr<const Plan> plan_;
@@ -170,6 +176,9 @@ class AxisModel {
   Eigen::MatrixXd inner_decay_;           // of the inner states over a sample; empty: not yet computed
   std::vector<char> remembered_;          // the arena at an operating point
   std::optional<LinearAxis> linearized_;  // with the present inertia and noise
+  bool is_affine_ = false;
+  std::vector<int> affine_states_;
+  std::optional<AffineSample> affine_;  // with the present inertia
   std::vector<double> driving_force_;
   double force_per_input_ = 0;
   AxisRecord record_;

@@ -90,7 +90,7 @@ Eigen::VectorXd AxisModel::sample_from(const Eigen::VectorXd& states, double inp
   std::ranges::copy(remembered_, run_->arena().begin());
   run_->restored({plan_->clock.time(plan_->start_tick), plan_->start_tick});
   for (size_t i = 0; i < seen_.size(); ++i) numbers_[plan_->signals + seen_[i]] = states[Eigen::Index(i)];
-  step(input, force);
+  step_run(input, force);
   Eigen::VectorXd next(states.size());
   for (size_t i = 0; i < seen_.size(); ++i) next[Eigen::Index(i)] = state(seen_[i]);
   return next;

@@ -11,7 +11,7 @@
 namespace loopwright::diagnosis {
 namespace {
 
-constexpr size_t fewest_rows = 3;  // of a motion: its acceleration needs so many
+constexpr size_t fewest_rows_of_motion = 3;  // of a motion: its acceleration needs so many
 
 /// Port and index of a role. Reports a problem if the experiment lacks a required role.
 const std::string* role_port(const Experiment& experiment, std::string_view role, Place* place) {
@@ -283,9 +283,9 @@ AxisRecord read_axis_record(const Experiment& experiment, const Plan& plan, Prob
   record.title = experiment.title, record.path = experiment.path, record.place = experiment.place;
   const std::vector<double>& time = experiment.data.columns.front().values;
   if (experiment.drives.empty()) return record;
-  if (!experiment.is_map && time.size() < fewest_rows) {
+  if (!experiment.is_map && time.size() < fewest_rows_of_motion) {
     problems.error(experiment.place, "/data", "", "too few rows for a diagnosis").expected =
-        fmt::format("at least {} rows", fewest_rows);
+        fmt::format("at least {} rows", fewest_rows_of_motion);
     return record;
   }
   if (const std::string why = too_many_missing(experiment); !why.empty()) {

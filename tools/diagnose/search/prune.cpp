@@ -1,5 +1,6 @@
 #include "tools/diagnose/search/prune.h"
 #include <algorithm>
+#include "tools/diagnose/search/weight.h"
 
 namespace loopwright::diagnosis {
 
