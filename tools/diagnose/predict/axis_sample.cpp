@@ -76,8 +76,8 @@ bool AxisModel::is_affine_along_record() {
   std::vector<Agreement> agreements(before.size());
   double* all = numbers_ + plan_->signals;
   for (size_t k = 0; k + 1 < record_.rows(); ++k) {
-    const double speed = velocity ? velocity->value[k]
-                                  : (position->value[k + 1] - position->value[k]) / record_.sample_time;
+    const double speed =
+        velocity ? velocity->value[k] : (position->value[k + 1] - position->value[k]) / record_.sample_time;
     place(position ? position->value[k] : this->position(), speed);
     before.assign(all, all + plan_->states), other = before;
     const double force = largest * (double(k % 5) - 2);
