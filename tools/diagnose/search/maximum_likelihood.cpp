@@ -173,6 +173,8 @@ Estimate on_own_motion(Trials& trials, Estimate estimate) {
 
 Estimate fit_members(Trials& trials, std::vector<Member> members, const Noise& noise, const Motion& motion,
                      int iterations, double worst) {
+  constexpr int iterations_beyond_limit = 2;  // of what follows a search that took too long
+  if (trials.work->is_spent(1)) iterations = std::min(iterations, iterations_beyond_limit);
   Estimate best = evaluated(trials, std::move(members), noise, motion);
   const std::vector<FreeParameter> free = free_parameters(best.members);
   const double far = same_motion * double(fitted_numbers(trials));
@@ -195,7 +197,7 @@ Estimate fit_members(Trials& trials, std::vector<Member> members, const Noise& n
 }
 
 Estimate with_own_noise(Trials& trials, Estimate estimate, int iterations, double worst) {
-  constexpr int rounds = 2;
+  const int rounds = trials.work->is_spent(1) ? 1 : 2;
   for (int round = 0; round < rounds && estimate.is_valid; ++round) {
     const double before = estimate.profile;
     const Noise noise = fit_noise_alone(trials, *estimate.fitted, estimate.noise, FreeNoise::all);
