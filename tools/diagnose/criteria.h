@@ -267,7 +267,7 @@ constexpr double least_ratio_of_sensors = 0.01, sure_ratio = 6;
 
 /// [operations] A record of 56 s with one or two effects needs a twentieth of it, one with a load that flies
 /// half. Half a minute to a minute of processor time.
-constexpr double most_work = 48e9;
+constexpr double most_work = 45e9;
 /// [operations] The same without roles: one to two minutes. Of a record with three effects in a stiff
 /// circuit, the first search needs 37e9.
 constexpr double most_work_at_sites = 70e9;

@@ -8,6 +8,40 @@
 namespace loopwright::diagnosis {
 namespace {
 
+/// The logarithm of a product, taken once for many factors.
+class LogarithmOfProduct {
+ public:
+  void multiply(double factor) {
+    constexpr double small = 1e-100,
+                     large = 1e100;  // a further factor keeps the product within what a double holds
+    product_ *= factor;
+    if (product_ < small || product_ > large) sum_ += std::log(product_), product_ = 1;
+  }
+  double value() const { return sum_ + std::log(product_); }
+
+ private:
+  double product_ = 1, sum_ = 0;
+};
+
+/// P ← A P Aᵀ of a symmetric P, column by column.
+template <class Matrix> void transform(const Matrix& A, Matrix& P, Matrix& product) {
+  const Eigen::Index n = A.rows();
+  for (Eigen::Index j = 0; j < n; ++j) {
+    product.col(j) = P(0, j) * A.col(0);
+    for (Eigen::Index k = 1; k < n; ++k) product.col(j) += P(k, j) * A.col(k);
+  }
+  for (Eigen::Index j = 0; j < n; ++j) {
+    P.col(j) = A(j, 0) * product.col(0);
+    for (Eigen::Index k = 1; k < n; ++k) P.col(j) += A(j, k) * product.col(k);
+  }
+}
+
+/// Its upper half becomes its lower one.
+template <class Matrix> void make_symmetric(Matrix& P) {
+  for (Eigen::Index j = 1; j < P.rows(); ++j)
+    for (Eigen::Index i = 0; i < j; ++i) P(i, j) = P(j, i);
+}
+
 /// Mean of a term over a sample, by Simpson's rule.
 double mean_of(double start, double middle, double end) { return (start + 4 * middle + end) / 6; }
 
@@ -22,7 +56,10 @@ double SiteFilter::objective_with(const SitePass& pass, const SiteNoise& noise) 
     using MapOf = Eigen::Map<const Vector>;
     Matrix P(n, n), A(n, n), product(n, n);
     Vector difference(n), delta(n), gain(n), change(n);  // from the states of the pass
-    double objective = 0;
+    double squares = 0;
+    LogarithmOfProduct variances;
+    std::vector<double> kept(noise.slow.size());
+    double step_of_kept = 0;
     for (size_t row = 0; row < pass.rows; ++row) {
       if (record_.begins_at(row)) {
         P.setZero(), difference.setZero();
@@ -37,15 +74,17 @@ double SiteFilter::objective_with(const SitePass& pass, const SiteNoise& noise) 
         gain.noalias() = P * C;
         const double S = C.dot(gain) + squared(noise.measurement[j]);
         const double e = pass.innovation[at] - C.dot(difference) - C.dot(delta);
-        P.noalias() -= (gain / S) * gain.transpose();
+        for (Eigen::Index i = 0; i < n; ++i) P.col(i) -= (gain[i] / S) * gain;
         delta += (e / S) * gain;
-        objective += std::log(S) + e * e / S;
+        variances.multiply(S), squares += e * e / S;
       }
       A = Eigen::Map<const Matrix>(&pass.A[row * pass.states * pass.states], n, n);
-      for (size_t j = 0; j < noise.slow.size(); ++j) {
-        const auto i = Eigen::Index(model_states_ + j);
-        A(i, i) = noise.slow[j].kept(record_.step(row));
+      if (const double step = record_.step(row); step != step_of_kept) {
+        for (size_t j = 0; j < kept.size(); ++j) kept[j] = noise.slow[j].kept(step);
+        step_of_kept = step;
       }
+      for (size_t j = 0; j < kept.size(); ++j)
+        A(Eigen::Index(model_states_ + j), Eigen::Index(model_states_ + j)) = kept[j];
       if (pass.share[row] < 1) delta *= pass.share[row];
       change = difference + delta - MapOf(&pass.correction[row * pass.states], n);
       difference.noalias() = A * change;
@@ -55,20 +94,20 @@ double SiteFilter::objective_with(const SitePass& pass, const SiteNoise& noise) 
             (A(Eigen::Index(i), Eigen::Index(i)) - pass.A[(row * pass.states + i) * pass.states + i]) *
             pass.filtered[row * pass.states + i];
       }
-      product.noalias() = A * P;
-      P.noalias() = product * A.transpose();
+      transform<Matrix>(A, P, product);
       const double shorter = record_.sample_time / record_.step(row);
       for (size_t s = 0; s < noise.sites.size(); ++s) {
         const MapOf G(&pass.G[(row * pass.sites + size_t(noise.sites[s])) * pass.states], n);
-        P.noalias() += ((shorter * squared(deviation_at(pass, row, noise, s))) * G) * G.transpose();
+        const double variance = shorter * squared(deviation_at(pass, row, noise, s));
+        for (Eigen::Index i = 0; i < n; ++i) P.col(i) += (variance * G[i]) * G;
       }
       for (size_t j = 0; j < noise.slow.size(); ++j) {
         const auto i = Eigen::Index(model_states_ + j);
         P(i, i) += squared(noise.slow[j].size) * (1 - A(i, i) * A(i, i));
       }
-      product = P.transpose();
-      P = 0.5 * (P + product);
+      make_symmetric(P);
     }
+    const double objective = variances.value() + squares;
     return std::isfinite(objective) ? objective : std::numeric_limits<double>::infinity();
   });
 }
