@@ -39,8 +39,9 @@ void change_load(Member& load, double factor) {
   load.nonlinear[1] = std::clamp(load.nonlinear[1] / std::sqrt(factor), frequency.low, frequency.high);
 }
 
-/// Fits members that begin elsewhere; whether they do clearly better.
+/// Fits members that begin elsewhere, unless too much was tried before; whether they do clearly better.
 bool take_if_better(Trials& trials, Estimate& best, std::vector<Member> members) {
+  if (trials.work->is_spent(criteria::work_with_rivals)) return false;
   const double worst = best.profile - least_gain_of_other_load;
   Estimate other =
       fit_members(trials, std::move(members), best.noise, best.motion, iterations_in_flight, worst);
