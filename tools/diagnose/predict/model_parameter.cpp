@@ -100,6 +100,16 @@ void StatedNumbers::add(std::string path, double* at) {
     numbers_.push_back({std::move(path), at, *at});
 }
 
+void StatedNumbers::act_on(Run<double>& run) {
+  for (Number& number : numbers_) number.at = run.parameter(number.path);
+}
+
+void ModelParameters::act_on(Run<double>& run) {
+  for (ModelParameter& parameter : list)
+    for (ModelParameter::Number& number : parameter.numbers) number.at = run.parameter(number.path);
+  stated.act_on(run);
+}
+
 std::vector<double> StatedNumbers::read(std::span<const ModelParameter> parameters,
                                         std::span<const double> factors) const {
   const Changed changed(diagram_, options_, parameters, factors);
@@ -167,7 +177,7 @@ class OfDiagram {
       is_read = is_determined_[i] = true;
       const auto power = power_of(own_[i].value, after);
       if (power)
-        one.numbers.push_back({run_.parameter(own_[i].path), own_[i].value, *power});
+        one.numbers.push_back({own_[i].path, run_.parameter(own_[i].path), own_[i].value, *power});
       else
         found_.stated.add(own_[i].path, run_.parameter(own_[i].path)), is_stated_.insert(i);
     }
@@ -189,7 +199,7 @@ class OfDiagram {
                                own_[i].value,
                                {},
                                false,
-                               {{run_.parameter(own_[i].path), own_[i].value, 1.0}}});
+                               {{own_[i].path, run_.parameter(own_[i].path), own_[i].value, 1.0}}});
     return std::move(found_);
   }
 

@@ -24,6 +24,7 @@ struct ModelParameter {
   bool is_of_diagram = false;     ///< otherwise a setting of a block
   /// A number of a block that is proportional to a power of the parameter.
   struct Number {
+    std::string path;
     double* at;
     double nominal, power;
   };
@@ -44,6 +45,8 @@ class StatedNumbers {
       : diagram_(std::move(diagram)), options_(std::move(options)) {}
 
   void add(std::string path, double* at);
+  /// The same numbers of another run of the diagram.
+  void act_on(Run<double>& run);
   /// As many not-a-numbers if it is no diagram with these values.
   void set(std::span<const ModelParameter> parameters, std::span<const double> factors);
 
@@ -71,6 +74,8 @@ struct ModelParameters {
   /// Gives all numbers the values that follow from these factors. Several parameters may determine one
   /// number, as "=bulk_modulus/volume" does.
   void set(std::span<const double> factors);
+  /// From here on the numbers of another run of the diagram.
+  void act_on(Run<double>& run);
 };
 
 /// Of all blocks with an output; parameters of the outermost diagram are followed into the expressions that

@@ -83,6 +83,11 @@ class SiteFilter {
   /// Sizes of states and sites from a pass; differences are taken in proportion to them.
   void learn_scales(const SitePass& pass);
 
+  /// The same as another filter has learned.
+  void take_scales(const SiteFilter& other) {
+    state_scale_ = other.state_scale_, site_scale_ = other.site_scale_;
+  }
+
   /// A size at the site of notable effect on a state within a sample.
   double site_scale(int site) const { return site_scale_[size_t(site)]; }
 

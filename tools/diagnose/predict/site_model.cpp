@@ -85,12 +85,12 @@ void SiteModel::set_ramp(int site, size_t row, double ramp) {
 }
 
 void SiteModel::suppose_between_rows(size_t input, BetweenRows between) {
-  record_.inputs[input].between_rows = between;
+  record_.inputs[input].between_rows = between, ++suppositions_;
   draw_all_lines();
 }
 
 void SiteModel::suppose_input(size_t input, std::vector<double> values) {
-  record_.inputs[input].value = std::move(values);
+  record_.inputs[input].value = std::move(values), ++suppositions_;
   draw_all_lines();
 }
 

@@ -98,6 +98,10 @@ class SiteModel {
   SiteModel(const std::string& diagram, const std::vector<std::string>& experiments,
             const LoadOptions& options);
   ~SiteModel();
+  /// Another one that supposes the same, for another thread. What it computes is counted by itself.
+  std::unique_ptr<SiteModel> another() const;
+  /// How often something else was supposed about an input: one that was copied before supposes less.
+  size_t suppositions() const { return suppositions_; }
 
   const SignalRecord& record() const { return record_; }
   const Plan& plan() const { return *plan_; }
@@ -172,8 +176,13 @@ class SiteModel {
     Front front;
     size_t site, term;
   };
-  /// The diagram with the values of one record, or of all records alike.
+  /// The diagram with the values of one record, or of all records alike. A copy has no run yet.
   struct OwnRun {
+    explicit OwnRun(std::shared_ptr<const Plan> of);
+    OwnRun(const OwnRun& other);
+    OwnRun(OwnRun&&) noexcept;
+    ~OwnRun();
+
     std::shared_ptr<const Plan> plan;
     std::unique_ptr<Run<double>> run;
     double* numbers = nullptr;   // the arena's
@@ -182,6 +191,7 @@ class SiteModel {
     std::vector<std::span<char>> modes;
   };
 
+  SiteModel(const SiteModel&);  // another() completes it
   void build(const std::string& diagram, const LoadOptions& options, const Experiments& experiments,
              Problems& problems);
   void read_records(const std::vector<std::shared_ptr<const Plan>>& plans, const Experiments& experiments,
@@ -235,6 +245,7 @@ class SiteModel {
   std::vector<int> measured_state_;
   bool has_decisions_ = false, all_are_states_ = true;
   int substeps_ = 2;
+  size_t suppositions_ = 0;
   Work work_;
   std::vector<double> slope_[4], stage_, begin_, changed_;
   size_t mode_bytes_ = 0;

@@ -163,6 +163,26 @@ SiteModel::SiteModel(const std::string& diagram, const std::vector<std::string>&
   find_nearness();
 }
 
+SiteModel::OwnRun::OwnRun(std::shared_ptr<const Plan> of) : plan(std::move(of)) {}
+SiteModel::OwnRun::OwnRun(const OwnRun& other) : plan(other.plan), parameters(other.parameters) {}
+SiteModel::OwnRun::OwnRun(OwnRun&&) noexcept = default;
+SiteModel::OwnRun::~OwnRun() = default;
+
+SiteModel::SiteModel(const SiteModel&) = default;
+
+std::unique_ptr<SiteModel> SiteModel::another() const {
+  std::unique_ptr<SiteModel> copy(new SiteModel(*this));
+  copy->is_read_ = nullptr, copy->work_ = {};
+  for (OwnRun& own : copy->runs_) {
+    own.plan = copy->with_site_blocks(*own.plan);  // that read its own signals
+    copy->start(own);
+    own.parameters.act_on(*own.run);
+  }
+  copy->plan_ = copy->runs_.front().plan;
+  copy->use(std::vector(parameters_.size(), 1.0), {});
+  return copy;
+}
+
 /// The sources that the record replaces may be those that state a unit.
 void SiteModel::complete_units(const Plan& stated) {
   const auto complete = [&](const std::string& port, std::optional<Unit>& unit, Quantity& quantity) {
@@ -233,7 +253,7 @@ void SiteModel::build(const std::string& path, const LoadOptions& options, const
   for (const Site& site : sites_)
     site_blocks_.push_back(site.kind == Site::Kind::sensor ? -1
                                                            : block_at(*compiled.front(), site.term_block));
-  for (const auto& plan : compiled) runs_.push_back({with_site_blocks(*plan), nullptr, nullptr, {}, {}, {}});
+  for (const auto& plan : compiled) runs_.emplace_back(with_site_blocks(*plan));
   for (const RecordedInput& input : record_.inputs)
     for (Site& site : sites_)
       if (site.own_signal == driver_of(input.port) + ".y") site.name = site.own_signal = input.port;

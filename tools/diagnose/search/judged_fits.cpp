@@ -53,16 +53,20 @@ std::vector<SiteHypothesis> JudgedFits::fits(const SiteHypothesis& at,
     if (candidate.constant) trial.terms.push_back(*candidate.constant);
     trial.terms.push_back(candidate.term);
     if (candidate.term.shape->of == TermShape::Of::own) trial.terms.back().coefficient[0] = 1;
-    fitter_.refine(trial, first_steps);
-    if (std::isfinite(trial.objective)) list.push_back(std::move(trial));
+    list.push_back(std::move(trial));
   }
+  const auto refine = [&](int steps) {
+    fitter_.side_by_side(list.size(), [&](SiteFitter& fitter, size_t i) { fitter.refine(list[i], steps); });
+  };
+  refine(first_steps);
+  std::erase_if(list, [](const SiteHypothesis& h) { return !std::isfinite(h.objective); });
   keep_best(list, at, criteria::behind_after_first_steps);
-  for (SiteHypothesis& h : list) fitter_.refine(h, further_steps);
+  refine(further_steps);
   keep_best(list, at, criteria::behind_after_all_steps);
-  for (SiteHypothesis& h : list) {
-    fitter_.fit_noise(h);
-    fitter_.refine(h, 3);
-  }
+  fitter_.side_by_side(list.size(), [&](SiteFitter& fitter, size_t i) {
+    fitter.fit_noise(list[i]);
+    fitter.refine(list[i], last_steps);
+  });
   std::ranges::sort(list, {}, [&](const SiteHypothesis& h) { return criterion(h); });
   return list;
 }

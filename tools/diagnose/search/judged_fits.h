@@ -11,7 +11,7 @@ namespace loopwright::diagnosis {
 class JudgedFits {
  protected:
   /// Gauss-Newton steps of a candidate: after the first ones it shows which are hopeless.
-  static constexpr int first_steps = 2, further_steps = 3;
+  static constexpr int first_steps = 2, further_steps = 3, last_steps = 3;
 
   explicit JudgedFits(SiteFitter& fitter) : fitter_(fitter) {}
 

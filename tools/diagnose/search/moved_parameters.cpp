@@ -101,17 +101,24 @@ void put_back(SiteHypothesis& h, int parameter) {
   h.is_free[size_t(parameter)] = false, h.factors[size_t(parameter)] = 1;
 }
 
-/// With its own noise; the list stays in the order of the criterion.
-void add_fitted(std::vector<MovedParameters>& list, SiteFitter& fitter, SiteHypothesis h, double readings) {
+/// With its own noise; nothing if it diverges.
+std::optional<MovedParameters> fitted(SiteFitter& fitter, SiteHypothesis h, double readings) {
   fitter.refine(h, 8);
   fitter.fit_noise(h);
   fitter.refine(h, 3);
-  if (!std::isfinite(h.objective)) return;
+  if (!std::isfinite(h.objective)) return {};
   const double cost = double(h.free_parameters()) * (std::log(readings) + cost_of_parameter);
   MovedParameters choice{std::move(h), 0};
   choice.criterion = choice.hypothesis.objective + cost;
   choice.standard_errors = standard_errors(fitter, choice.hypothesis);
-  list.insert(std::ranges::upper_bound(list, choice.criterion, {}, &MovedParameters::criterion), choice);
+  return choice;
+}
+
+/// The list stays in the order of the criterion.
+void add(std::vector<MovedParameters>& list, std::optional<MovedParameters> choice) {
+  if (!choice) return;
+  const auto place = std::ranges::upper_bound(list, choice->criterion, {}, &MovedParameters::criterion);
+  list.insert(place, std::move(*choice));
 }
 
 /// [standard errors] By which the i-th of the moved parameters is off.
@@ -135,7 +142,7 @@ void put_idle_ones_back(std::vector<MovedParameters>& list, SiteFitter& fitter, 
     put_back(h, without[idle]);
     without.erase(without.begin() + std::ptrdiff_t(idle));
     if (std::ranges::any_of(list, [&](const auto& known) { return known.moved() == without; })) return;
-    add_fitted(list, fitter, std::move(h), readings);
+    add(list, fitted(fitter, std::move(h), readings));
   }
 }
 
@@ -186,14 +193,16 @@ std::vector<MovedParameters> moved_parameters(SiteFitter& fitter, const SiteHypo
                                                              Eigen::Index(free.size()), undetermined);
     sets = promising_sets(covariance, deviation, readings);
   }
-  std::vector<MovedParameters> list;
-  for (uint32_t set : sets) {
-    if (!list.empty() && fitter.model().work().is_spent(1)) break;
+  if (fitter.model().work().is_spent(1)) sets.resize(1);
+  std::vector<std::optional<MovedParameters>> choices(sets.size());
+  fitter.side_by_side(sets.size(), [&](SiteFitter& own, size_t s) {
     SiteHypothesis h = start;
     for (size_t i = 0; i < free.size(); ++i)
-      if (!(set >> i & 1)) put_back(h, free[i]);
-    add_fitted(list, fitter, std::move(h), readings);
-  }
+      if (!(sets[s] >> i & 1)) put_back(h, free[i]);
+    choices[s] = fitted(own, std::move(h), readings);
+  });
+  std::vector<MovedParameters> list;
+  for (std::optional<MovedParameters>& choice : choices) add(list, std::move(choice));
   put_idle_ones_back(list, fitter, readings);
   const std::vector<MovedParameters> all = list;
   std::erase_if(list, [&](const MovedParameters& choice) { return is_immaterial(choice, all); });

@@ -13,18 +13,18 @@ constexpr size_t fitted_with_noise = 3;  // the others are hopeless after the fi
 std::vector<SiteHypothesis> with_one_parameter(SiteFitter& fitter, const SiteHypothesis& nominal,
                                                const SiteHypothesis& parameters) {
   std::vector<SiteHypothesis> list;
-  for (size_t i = 0; i < parameters.is_free.size() && !fitter.is_interrupted(); ++i) {
+  for (size_t i = 0; i < parameters.is_free.size(); ++i) {
     if (!parameters.is_free[i]) continue;
-    SiteHypothesis one = nominal;
-    one.is_free[i] = true;
-    fitter.refine(one, first_steps);
-    if (std::isfinite(one.objective)) list.push_back(std::move(one));
+    list.push_back(nominal);
+    list.back().is_free[i] = true;
   }
+  fitter.side_by_side(list.size(), [&](SiteFitter& own, size_t i) { own.refine(list[i], first_steps); });
+  std::erase_if(list, [](const SiteHypothesis& one) { return !std::isfinite(one.objective); });
   std::ranges::stable_sort(list, {}, &SiteHypothesis::scaled_objective);
-  for (size_t i = 0; i < std::min(fitted_with_noise, list.size()); ++i) {
-    fitter.anneal(list[i]);
-    fitter.refine(list[i], further_steps);
-  }
+  fitter.side_by_side(std::min(fitted_with_noise, list.size()), [&](SiteFitter& own, size_t i) {
+    own.anneal(list[i]);
+    own.refine(list[i], further_steps);
+  });
   std::ranges::stable_sort(list, {}, &SiteHypothesis::objective);
   return list;
 }

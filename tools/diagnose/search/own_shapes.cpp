@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <mutex>
 #include <numbers>
 #include "engine/diagram/formula_parser.h"
 #include "tools/effects/site_effect.h"
@@ -19,6 +20,7 @@ struct CompiledEffect {
   FormulaParser parser;
   std::vector<double> values;
   size_t linear;
+  std::mutex mutex;  // of parser and values: fits run on several threads
 
   explicit CompiledEffect(SiteEffect e)
       : effect(std::move(e)),
@@ -34,6 +36,7 @@ struct CompiledEffect {
 
   /// With each linear parameter alone at one; a distortion has but one column.
   void columns(double signal, const double* own, double* column) {
+    const std::lock_guard lock(mutex);
     values[0] = signal;
     for (size_t p = linear; p < effect.parameters.size(); ++p) values[p + 1] = own[p - linear];
     for (size_t c = 0; c < std::max<size_t>(1, linear); ++c) {

@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Dense>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 #include "tools/diagnose/predict/site_filter.h"
@@ -64,6 +65,11 @@ class SiteFitter {
   std::span<const TermShape> shapes() const { return shapes_; }
   void offer(std::span<const TermShape> shapes) { shapes_ = shapes; }
 
+  /// fit(fitter, 0) … fit(fitter, count - 1), on all processors, each by a fitter with a model of its own
+  /// that knows what this one knows. What it leaves must depend on nothing else, and it must not change the
+  /// steps of the integration, as anneal() of a law with a memory does.
+  void side_by_side(size_t count, const std::function<void(SiteFitter&, size_t)>& fit);
+
   /// A whole pass; false if the model diverges. Sets the hypothesis' objectives.
   bool pass(SiteHypothesis& hypothesis, bool with_columns, SitePass& to);
   /// Gauss-Newton steps on all fitted numbers, judged by whole passes, with a weak prior on the factors of
@@ -88,6 +94,7 @@ class SiteFitter {
 
  private:
   struct Normal;
+  struct Other;
   void solve(const SiteHypothesis& hypothesis, const std::vector<FittedNumber>& numbers,
              Normal& normal) const;
   void use(const SiteHypothesis& hypothesis);
@@ -103,6 +110,7 @@ class SiteFitter {
   std::span<const TermShape> shapes_ = named_shapes();
   SitePass pass_;
   std::vector<double> errors_;
+  std::vector<std::shared_ptr<Other>> others_;  // for other threads
 };
 
 }  // namespace loopwright::diagnosis
