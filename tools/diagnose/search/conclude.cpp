@@ -64,11 +64,12 @@ std::optional<Estimate> simplified(Rivals& rivals, const std::vector<Member>& me
 }
 
 /// The same law by fewer members: a mass alone is simpler than a gain and a damping that make up for it, and
-/// a gain is simpler than a mass and a damping in proportion.
+/// a gain is simpler than a mass and a damping in proportion. Such an answer is wrong, not only one of
+/// several, so that it is asked for although no further rival is.
 std::optional<Estimate> same_law_by_fewer(Trials& trials, Rivals& rivals, const std::vector<Member>& members,
                                           const std::vector<Candidate>& candidates) {
   for (const Proposal& swap : law_swaps(members, candidates, trials)) {
-    if (rivals.is_spent()) return {};
+    if (trials.work->is_spent(criteria::work_to_go_on)) return {};
     Estimate other = rivals.fitted(swap);
     // A change so large needs more steps than a rival, and noise of its own.
     if (other.is_valid && !rivals.loss_of(swap, other, reach_of_same_law)) maximise(trials, other);
@@ -357,7 +358,8 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
     std::ranges::move(alike_in_one_direction(trials, estimate, candidates),
                       std::back_inserter(result.other_sets));
     leave_out_refused(result, refused);
-    if (rounds > 0 && (instead = rivals.better(unexplained(result.portmanteau_beside_counts()))))
+    const auto doubt = [&](const Estimate& rival) { return unexplained_beside_counts(trials, rival); };
+    if (rounds > 0 && (instead = rivals.better(doubt)))
       result.trail.push_back("with noise of its own another set does better");
   }
   if (instead) {

@@ -66,7 +66,7 @@ bool Rivals::is_promised(const Proposal& proposal, const Estimate& other) const 
          criterion_of(other) - criterion_of(estimate_) < criteria::most_promised_loss * reach_;
 }
 
-std::optional<Estimate> Rivals::better(double doubt) {
+std::optional<Estimate> Rivals::better(const std::function<double(const Estimate&)>& doubt) {
   const auto at_limit = [](const Estimate& e) { return std::ranges::count_if(e.members, is_at_limit); };
   const auto is_blurred = [&](const Member& m) { return !at_reversals_.is_resolved(m); };
   const auto blurred = [&](const Estimate& e) { return std::ranges::count_if(e.members, is_blurred); };
@@ -75,7 +75,7 @@ std::optional<Estimate> Rivals::better(double doubt) {
   maximise(trials_, best_);
   const double gain = criterion_of(estimate_) - criterion_of(best_);
   return gain + preference(trials_, best_.members, estimate_.members) >
-                 std::max(criteria::clearly_better, doubt)
+                 std::max(criteria::clearly_better, doubt(best_))
              ? std::optional(std::move(best_))
              : std::nullopt;
 }

@@ -1,5 +1,6 @@
 /// Other sets of effects beside one that was found.
 #pragma once
+#include <functional>
 #include <optional>
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/evidence.h"
@@ -42,9 +43,9 @@ class Rivals {
   /// quantizes, for example with an encoder, every run gives a different result.
   bool is_promised(const Proposal& proposal, const Estimate& other) const;
   /// The best of the sets whose loss was computed, if it is also better with noise of its own: the search
-  /// compared them under the noise known then. `doubt`: what its gain must exceed when the errors are not
-  /// white.
-  std::optional<Estimate> better(double doubt);
+  /// compared them under the noise known then. `doubt`: what its gain must exceed when the errors that it
+  /// leaves are not white.
+  std::optional<Estimate> better(const std::function<double(const Estimate&)>& doubt);
 
  private:
   bool is_refused(const Proposal& proposal) const;
