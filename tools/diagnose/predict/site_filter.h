@@ -5,7 +5,8 @@
 /// inverted:
 ///   e = y - h(x̂) - C δ,   S = C P Cᵀ + R,   K = P Cᵀ / S,   δ += K e,   P -= K S Kᵀ
 ///   x̂ ← flow(x̂ + δ),   P ← A P Aᵀ + Σ σ² G Gᵀ
-/// with A, C and G (the effect of a unit at a site, held over the sample) by differences of the model.
+/// with A, C and G (the effect of a unit at a site, held over the sample) by differences: in the middle of
+/// each step of the integration (flow_slopes.h), or of the whole sample where that is not smooth enough.
 #pragma once
 #include <Eigen/Dense>
 #include <array>

@@ -38,13 +38,13 @@ bool SiteFilter::slopes_of_outputs(size_t row, SitePass& pass) {
   moved_ = x_;
   model_.keep_modes(row, modes_.data());
   for (size_t i = 0; i < model_states_; ++i) {
-    const double change = difference_step * state_scale_[i] * first_finite([&](double length) {
-                            moved_[Eigen::Index(i)] =
-                                x_[Eigen::Index(i)] + length * difference_step * state_scale_[i];
-                            model_.put_modes_back(row, modes_.data());
-                            return model_.outputs(row, moved_.data(), y_moved_.data()) &&
-                                   std::ranges::all_of(y_moved_, [](double y) { return std::isfinite(y); });
-                          });
+    const auto is_finite_with = [&](double length) {
+      moved_[Eigen::Index(i)] = x_[Eigen::Index(i)] + length * difference_step * state_scale_[i];
+      model_.put_modes_back(row, modes_.data());
+      return model_.outputs(row, moved_.data(), y_moved_.data()) &&
+             std::ranges::all_of(y_moved_, [](double y) { return std::isfinite(y); });
+    };
+    const double change = difference_step * state_scale_[i] * first_finite(is_finite_with);
     if (change == 0) return false;
     moved_[Eigen::Index(i)] = x_[Eigen::Index(i)];
     for (size_t j = 0; j < pass.outputs; ++j)
@@ -133,11 +133,11 @@ bool SiteFilter::differences(size_t row, const SiteNoise& noise, SitePass& pass)
   moved_ = x_, moved_next_ = next_;
   Map(&pass.A[row * n * n], Eigen::Index(n * n)).setZero();
   for (size_t i = 0; i < model_states_; ++i) {
-    const double change = difference_step * state_scale_[i] * first_finite([&](double length) {
-                            moved_[Eigen::Index(i)] =
-                                x_[Eigen::Index(i)] + length * difference_step * state_scale_[i];
-                            return try_flow(row, pass, moved_.data(), moved_next_.data());
-                          });
+    const auto is_finite_with = [&](double length) {
+      moved_[Eigen::Index(i)] = x_[Eigen::Index(i)] + length * difference_step * state_scale_[i];
+      return try_flow(row, pass, moved_.data(), moved_next_.data());
+    };
+    const double change = difference_step * state_scale_[i] * first_finite(is_finite_with);
     if (change == 0) return false;
     moved_[Eigen::Index(i)] = x_[Eigen::Index(i)];
     Map(&pass.A[(row * n + i) * n], Eigen::Index(n)) = (moved_next_ - next_) / change;

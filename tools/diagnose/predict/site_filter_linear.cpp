@@ -12,8 +12,8 @@ namespace {
 class LogarithmOfProduct {
  public:
   void multiply(double factor) {
-    constexpr double small = 1e-100,
-                     large = 1e100;  // a further factor keeps the product within what a double holds
+    // A further factor keeps the product within what a double holds.
+    constexpr double small = 1e-100, large = 1e100;
     product_ *= factor;
     if (product_ < small || product_ > large) sum_ += std::log(product_), product_ = 1;
   }
