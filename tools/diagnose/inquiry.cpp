@@ -10,15 +10,6 @@
 #include "tools/diagnose/search/whiteness.h"
 
 namespace loopwright::diagnosis {
-namespace {
-
-/// Of the same candidates, in any order.
-bool are_alike(const std::vector<Member>& one, const std::vector<Member>& other) {
-  return std::ranges::is_permutation(one, other, {}, &Member::candidate, &Member::candidate);
-}
-
-}  // namespace
-
 Inquiry::Inquiry(Trials& trials, const Motion& motion, const Catalogue& catalogue, const RecordSizes& sizes,
                  const std::function<void(const char*, double)>& progress)
     : trials_(trials),
@@ -27,13 +18,16 @@ Inquiry::Inquiry(Trials& trials, const Motion& motion, const Catalogue& catalogu
       unknown_(unknown_forces(sizes, trials.has_map(), trials.has_mass())),
       progress_(progress) {}
 
+bool Inquiry::explains_fitted_rows(const Estimate& estimate) const {
+  return estimate.is_valid && estimate.mean_square < criteria::well_explained &&
+         portmanteau(trials_, *estimate.fitted) <= criteria::most_portmanteau_of_search;
+}
+
 Conclusion Inquiry::with_names() {
   const SearchResult found = searched();
   const Estimate& e = found.estimate;
   // What remains unexplained anyway also appears there.
-  const bool seems_explained = e.mean_square < criteria::well_explained &&
-                               portmanteau(trials_, *e.fitted) <= criteria::most_portmanteau_of_search;
-  if (seems_explained && holds_out_something_else(e) && holds_out_something_else(with_fitted_noise(e)))
+  if (explains_fitted_rows(e) && holds_out_something_else(e) && holds_out_something_else(with_fitted_noise(e)))
     return with_all_rows(found.trail, e);
   Conclusion conclusion = concluded(found.trail, e);
   if (conclusion.is_white() && holds_out_something_else(conclusion.estimate))
@@ -69,8 +63,11 @@ SearchResult Inquiry::searched(const Estimate* before) {
   forget_reversals(trials_);
   const std::vector<Shape>& shapes = shapes_along_fitted_rows();
   progress_("searching", 0.4);
-  if (before && trials_.work->is_spent(criteria::work_of_search))
-    return {fit_members(trials_, before->members, before->noise, fitted_motion_, iterations), {}};
+  if (before) {
+    Estimate again = fit_members(trials_, before->members, before->noise, fitted_motion_, iterations);
+    if (trials_.work->is_spent(criteria::work_of_search) || explains_fitted_rows(again))
+      return {std::move(again), {}};
+  }
   return search(trials_, catalogue_.candidates, shapes, unknown_, fitted_motion_);
 }
 
@@ -100,7 +97,8 @@ Conclusion Inquiry::gone_on(Conclusion conclusion, const std::vector<Member>& se
   forget_reversals(trials_);
   SearchResult again =
       search_on(trials_, catalogue_.candidates, shapes_along_fitted_rows(), unknown_, fitted_motion_, named);
-  if (again.estimate.is_valid && !are_alike(again.estimate.members, members)) {
+  const bool leaves_much = !again.estimate.is_valid || again.estimate.mean_square >= criteria::much_left;
+  if (!leaves_much && !are_alike(again.estimate.members, members)) {
     std::vector<std::string> trail = conclusion.trail;
     std::ranges::move(again.trail, std::back_inserter(trail));
     Conclusion next = concluded(std::move(trail), again.estimate);

@@ -25,7 +25,8 @@ class Inquiry {
   const Motion& motion_of_all_rows() const { return on_all_rows_.motion; }
 
  private:
-  /// `before`: what was found in fewer rows, and is kept where no work is left.
+  bool explains_fitted_rows(const Estimate& estimate) const;
+  /// `before`: what was found in fewer rows, and is kept where it explains these too, or no work is left.
   SearchResult searched(const Estimate* before = nullptr);
   /// After what was tried before.
   Conclusion concluded(std::vector<std::string> trail, const Estimate& found);

@@ -1,5 +1,6 @@
 // The diagram that a diagnosis writes, run on the record: it has the error that the staircase promises.
 #include <gmock/gmock.h>
+#include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include "engine/json/json.h"
@@ -65,6 +66,33 @@ TEST(ImprovedDiagram, ContainsAnUnknownFunctionAsALookupWithItsRange) {
   EXPECT_THAT(text, HasSubstr("\"outside\": \"hold\""));
   EXPECT_THAT(to_text(d), HasSubstr("beyond them its ends are held"));
   EXPECT_NEAR(residual_of(d, record), d.steps.back().force_rmse, 0.15 * d.steps.back().force_rmse)
+      << to_text(d);
+}
+
+/// Something that gives way in the middle of a record. Its clock does not begin at zero.
+TEST(ImprovedDiagram, StatesAForceThatJumpsAsAStepAtItsInstantByTheClockOfTheRecord) {
+  HiddenMachine machine;
+  machine.leaves_out_s = 0.15;
+  HiddenAxis axis(machine);
+  Physics truth = axis.nominal();
+  truth.step_n = -0.5, truth.step_s = 2.4134, truth.coulomb_n = 0.3;
+  const std::string record = axis.record("record", truth, there_and_back(0.2, 0.4));
+  const Diagnosis d = written(axis, record);
+  EXPECT_THAT(names(d), testing::ElementsAre("coulomb_friction")) << to_text(d);
+  EXPECT_THAT(d.remainder_variables, testing::ElementsAre("time")) << to_text(d);
+  EXPECT_NEAR(d.effects[0].parameters[0].value, 0.3, 0.01) << to_text(d);
+  std::ifstream in(d.improved);
+  const std::string text(std::istreambuf_iterator<char>(in), {});
+  const size_t step = text.find(R"("type": "Step", "time": )");
+  ASSERT_NE(step, std::string::npos) << text;
+  double instant = 0, level = 0;
+  ASSERT_EQ(
+      std::sscanf(text.c_str() + step, R"("type": "Step", "time": %lf, "after": %lf)", &instant, &level), 2)
+      << text.substr(step, 100);
+  EXPECT_NEAR(instant, truth.step_s, hidden_sample_time);
+  EXPECT_NEAR(level, truth.step_n, 0.02);
+  EXPECT_THAT(to_text(d), HasSubstr("is a step at 2.41"));
+  EXPECT_NEAR(residual_of(d, record), d.steps.back().force_rmse, 0.1 * d.steps.back().force_rmse)
       << to_text(d);
 }
 

@@ -21,6 +21,7 @@ struct CandidateParameter {
   double span = 0;    ///< for a period: the stroke or time over which it repeats; determines its resolution
   double centre = 0;  ///< for a period: the middle of the record, where the phase is known best
   double start = 0;   ///< a typical value
+  double step = 0;    ///< for its derivative, where it is felt over so short a part of the range; 0: any
 
   /// Whether a value is at an end of the range; a fitted one is then reported as a warning, not as a result.
   bool ends_at(double value) const {
@@ -54,6 +55,7 @@ struct Candidate {
   bool flies = false;            ///< its force is zero for a while and returns with an impact
   bool is_repeatable = false;    ///< may occur more than once
   bool repeats_in_time = false;  ///< its period is in time, not in position
+  bool jumps = false;            ///< at an instant, its only nonlinear parameter, which the errors tell
   LawOf law_of = LawOf::several;
   bool is_unknown = false;  ///< not from the catalogue, but any function of the variables in `form`
   /// For several shapes together: cheaper than one after the other.
@@ -103,6 +105,11 @@ inline bool is_among(const std::vector<const Candidate*>& list, const Candidate&
 inline bool is_late_member(const Member& member) { return is_late_input(*member.candidate); }
 inline bool has_dry_friction(const std::vector<Member>& members) {
   return std::ranges::any_of(members, [](const Member& m) { return is_dry_friction(*m.candidate); });
+}
+
+/// Of the same candidates, in any order.
+inline bool are_alike(const std::vector<Member>& one, const std::vector<Member>& other) {
+  return std::ranges::is_permutation(one, other, {}, &Member::candidate, &Member::candidate);
 }
 
 /// Whether it makes a part of the mass move by itself.

@@ -1,6 +1,7 @@
 /// The effects of the catalogue as candidates: each runs its own blocks.
 #pragma once
 #include "tools/diagnose/search/candidate.h"
+#include "tools/diagnose/search/record_sizes.h"
 #include "tools/diagnose/diagnosis.h"
 #include "tools/effects/effect.h"
 
@@ -12,10 +13,6 @@ struct Catalogue {
   std::vector<Candidate> candidates;  ///< one per effect, in the same order
   std::vector<NotLookedFor> left_out;
 };
-
-/// Extents over all records.
-RecordSizes sizes_of(const std::vector<std::shared_ptr<const Path>>& paths,
-                     const std::vector<const AxisModel*>& models);
 
 /// Why an effect cannot be added to the diagram; empty: it can be added.
 using WhyNot = std::function<std::string(const Effect&)>;
@@ -33,11 +30,6 @@ std::string hidden_by_input_noise(const Effect& effect);
 /// Why an effect cannot be told from a controller that knows more than the record, by readings that the
 /// record lacks; empty: it can.
 std::string hidden_by_controller(const Effect& effect);
-
-/// [position] What repeats sooner than the first along these records is not looked for, and what repeats
-/// sooner than the second must matter.
-double shortest_pitch(const RecordSizes& sizes);
-double fine_pitch(const RecordSizes& sizes);
 
 /// Effects that cannot be added, and effects whose numbers cannot be computed for these records, are left
 /// out. `rows_are_uneven`: see has_uneven_rows(). Throws InputError with every problem of the effect files.

@@ -114,7 +114,8 @@ void add_shapes(const Candidate& candidate, const std::vector<std::vector<double
 std::vector<Shape> shapes_of(const std::vector<Candidate>& candidates, const Motion& motion) {
   std::vector<std::vector<Shape>> of_each(candidates.size());
   in_parallel(candidates.size(), [&](size_t i) {
-    if (!candidates[i].is_periodic) add_shapes(candidates[i], grid_points(candidates[i]), motion, of_each[i]);
+    if (!candidates[i].is_periodic && !candidates[i].jumps)
+      add_shapes(candidates[i], grid_points(candidates[i]), motion, of_each[i]);
   });
   std::vector<Shape> shapes;
   for (std::vector<Shape>& some : of_each) std::ranges::move(some, std::back_inserter(shapes));

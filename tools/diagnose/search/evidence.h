@@ -18,7 +18,7 @@ struct Shape {
 /// A candidate at several points together.
 void add_shapes(const Candidate& candidate, const std::vector<std::vector<double>>& points,
                 const Motion& motion, std::vector<Shape>& shapes);
-/// Every candidate at every point of its grid, except those that scan pitches.
+/// Every candidate at every point of its grid, except those whose pitch or instant the errors tell.
 std::vector<Shape> shapes_of(const std::vector<Candidate>& candidates, const Motion& motion);
 
 /// A set of effects that explains the errors, according to the linearization.

@@ -1,5 +1,7 @@
 #include "tools/diagnose/search/spectrum.h"
+#include "tools/diagnose/search/adjoint.h"
 #include "tools/diagnose/search/backward.h"
+#include "tools/diagnose/search/unknown.h"
 #include "models/real/whole.h"
 #include <algorithm>
 #include <cmath>
@@ -11,19 +13,6 @@ namespace loopwright::diagnosis {
 namespace {
 
 using Complex = std::complex<double>;
-
-/// For each sample, the derivative of the explained error with respect to the consumed (or equivalent) force
-/// at that sample: one backward run through the filter instead of a forward run for every pitch.
-std::vector<double> adjoint(const Trial& trial, const Fitted& fitted, Acts acts) {
-  const ErrorSystem system(fitted, acts == Acts::input);
-  std::vector<double> weight(fitted.prediction.path.samples());
-  run_backward(
-      system, fitted, [&](size_t k) { return trial.usable[k] && k < trial.held_out_from; },
-      [&](size_t k, const auto& after, const auto&, const auto& sensed, const auto& through) {
-        weight[k] = acts == Acts::sensor ? sensed[0] - through[0] : -system.enter.dot(after);
-      });
-  return weight;
-}
 
 /// |z / φ| of the error filter at a frequency [rad/sample].
 double gain_at(const ErrorSystem& system, const Gains& gains, bool is_sensor, double w) {
@@ -92,8 +81,9 @@ std::vector<double> spectrum(const Trials& trials, const Estimate& estimate, con
     const Column::Numbers envelope_now = envelope(candidate, path, stroke);
     const std::vector<float>& swell = *envelope_now;
     const double T = path.sample_time;
+    const std::vector<double> time = candidate.repeats_in_time ? times_of(path) : std::vector<double>();
     const auto coordinate = [&](size_t k) {
-      if (candidate.repeats_in_time) return (double(k) + 0.5) * T;
+      if (candidate.repeats_in_time) return 0.5 * (time[k] + time[k + 1]);
       return path.predicted_position[k] + (candidate.acts == Acts::sensor ? 0 : 0.5 * T * path.velocity[k]);
     };
     for (size_t k = 0; k < std::min(path.samples(), trials.list[t].held_out_from); ++k) {

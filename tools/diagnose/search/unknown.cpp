@@ -96,10 +96,11 @@ Candidate tone(const RecordSizes& sizes) {
       {"period", "s", shortest, longest, true, {std::sqrt(shortest * longest)}, sizes.duration}};
   candidate.columns_at = [](const Path& path, const std::vector<std::vector<double>>& shapes) {
     std::vector<Columns> result;
+    const std::vector<double> time = times_of(path);
     for (const std::vector<double>& shape : shapes) {
       std::vector<float> sine(path.samples()), cosine(path.samples());
       for (size_t k = 0; k < path.samples(); ++k) {
-        const double angle = 2 * std::numbers::pi * (double(k) + 0.5) * path.sample_time / shape[0];
+        const double angle = std::numbers::pi * (time[k] + time[k + 1]) / shape[0];
         sine[k] = float(std::sin(angle)), cosine[k] = float(std::cos(angle));
       }
       result.push_back({Column(std::move(sine)), Column(std::move(cosine))});
@@ -109,7 +110,38 @@ Candidate tone(const RecordSizes& sizes) {
   return candidate;
 }
 
+/// From an instant on.
+Candidate jump(const RecordSizes& sizes) {
+  constexpr double step = 0.3;  // [samples] The instant acts within one
+  Candidate candidate;
+  candidate.name = "unknown", candidate.form = "time", candidate.is_unknown = candidate.jumps = true,
+  candidate.at_rest = AtRest::gives;
+  candidate.linear = {{"level", "", -1e300, 1e300, false, {}}};
+  CandidateParameter instant{"instant", "s", 0, sizes.duration, false, {}};
+  instant.step = step * sizes.sample_time;
+  candidate.nonlinear = {instant};
+  candidate.columns_at = [](const Path& path, const std::vector<std::vector<double>>& shapes) {
+    std::vector<Columns> result;
+    const std::vector<double> time = times_of(path);
+    for (const std::vector<double>& shape : shapes) {
+      std::vector<float> level(path.samples());
+      for (size_t k = 0; k < path.samples(); ++k)
+        level[k] = float(std::clamp((time[k + 1] - shape[0]) / (time[k + 1] - time[k]), 0.0, 1.0));
+      result.push_back({Column(std::move(level))});
+    }
+    return result;
+  };
+  return candidate;
+}
+
 }  // namespace
+
+std::vector<double> times_of(const Path& path) {
+  std::vector<double> times{0};
+  for (size_t k = 0; k < path.samples(); ++k)
+    times.push_back(times[k] + path.sample_time * (path.duration.empty() ? 1 : path.duration[k]));
+  return times;
+}
 
 double spline_at(const std::vector<double>& levels, double fraction) {
   const SplinePieces pieces = spline_pieces(levels.size(), fraction);
@@ -126,7 +158,6 @@ std::vector<Candidate> unknown_forces(const RecordSizes& sizes, bool is_map, boo
   const double low = sizes.lowest_position, high = sizes.highest_position, top = sizes.top_speed;
   const Variable one = each_sample([](const Path&, size_t) { return 1.0; });
   const Variable acceleration = each_sample([](const Path& path, size_t k) { return path.acceleration[k]; });
-  const Variable time = each_sample([](const Path& path, size_t k) { return double(k) * path.sample_time; });
   const Variable position = each_sample(middle_position), velocity = each_sample(middle_velocity);
   const Variable direction = direction_of(transition_of_direction(sizes));
   Candidate of_velocity = spline("velocity", 24, -top, top, velocity, one);
@@ -139,11 +170,12 @@ std::vector<Candidate> unknown_forces(const RecordSizes& sizes, bool is_map, boo
   if (has_mass) of_acceleration = mass_along(std::move(of_acceleration));
   return {of_position,
           std::move(of_velocity),
-          spline("time", 40, 0, sizes.duration, time, one),
+          spline("time", 40, 0, sizes.duration, times_of, one),
           of_direction,
           spline("position,velocity", 24, low, high, position, velocity),
           std::move(of_acceleration),
-          tone(sizes)};
+          tone(sizes),
+          jump(sizes)};
 }
 
 }  // namespace loopwright::diagnosis

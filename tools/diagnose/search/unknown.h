@@ -7,10 +7,13 @@ namespace loopwright::diagnosis {
 
 /// Functions of position, of velocity, of time, of position with the direction (a position-dependent dry
 /// friction), with the velocity (a position-dependent damping) or with the acceleration (a position-dependent
-/// mass), and a tone in time. `form` lists the variables, separated by commas. For a map of balances, only
+/// mass), a tone and a jump in time. `form` lists the variables, separated by commas. For a map of balances, only
 /// position and direction. `has_mass`: the diagram has one to which the mean of a position-dependent mass can
 /// be added; otherwise all of it is a force.
 std::vector<Candidate> unknown_forces(const RecordSizes& sizes, bool is_map, bool has_mass);
+
+/// [s] From the first row, of each row, and of the end of the last one.
+std::vector<double> times_of(const Path& path);
 
 constexpr size_t spline_degree = 3;
 /// A function's value from its levels at a fraction of its range: a cubic spline over levels - 3 uniform

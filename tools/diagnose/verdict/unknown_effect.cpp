@@ -19,7 +19,7 @@ struct Range {
 };
 Range range_of_lookup(const std::string& variable, const RecordSizes& sizes) {
   if (variable == "velocity") return {-sizes.top_speed, sizes.top_speed};
-  if (variable == "time") return {0, sizes.duration};
+  if (variable == "time") return {sizes.start, sizes.start + sizes.duration};
   return {sizes.lowest_position, sizes.highest_position};
 }
 
@@ -46,17 +46,28 @@ std::string lookup(const Member& member, const Range& range, const std::string& 
       list_of(at), list_of(value), wire);
 }
 
-std::string tone(const Member& member) {
+/// Its phase is that at the first row.
+std::string tone(const Member& member, double start) {
+  const double turns = start / member.nonlinear[0];
   return fmt::format(R"({{"force": {{"type": "Sine", "amplitude": {}, "frequency": {}, "phase": {}}}}})",
                      readable_number(std::hypot(member.linear[0], member.linear[1])),
                      readable_number(1 / member.nonlinear[0]),
-                     readable_number(std::atan2(member.linear[1], member.linear[0])));
+                     readable_number(std::remainder(
+                         std::atan2(member.linear[1], member.linear[0]) - 2 * std::numbers::pi * turns,
+                         2 * std::numbers::pi)));
+}
+
+std::string jump(const Member& member, double start) {
+  return fmt::format(R"({{"force": {{"type": "Step", "time": {}, "after": {}}}}})",
+                     readable_number(start + member.nonlinear[0]), readable_number(member.linear[0]));
 }
 
 /// The blocks, and the output that is the force.
 std::pair<std::string, std::string> blocks_of(const Member& member, const RecordSizes& sizes) {
   const std::string& form = member.candidate->form;
-  if (member.candidate->is_periodic) return {tone(member), "force.y"};
+  if (form == "time" && !std::isfinite(sizes.start)) return {};
+  if (member.candidate->is_periodic) return {tone(member, sizes.start), "force.y"};
+  if (member.candidate->jumps) return {jump(member, sizes.start), "force.y"};
   const std::string variable = first_variable(form);
   const std::string table =
       lookup(member, range_of_lookup(variable, sizes), variable == "time" ? "clock.time" : variable);
@@ -98,6 +109,7 @@ std::optional<Effect> effect_of_unknown(const Member& member, const RecordSizes&
 
 std::string range_of_unknown(const Member& member, const RecordSizes& sizes, const MachineUnits& units) {
   if (member.candidate->is_periodic) return "";
+  if (member.candidate->jumps) return fmt::format("a step at {:.5g} s", sizes.start + member.nonlinear[0]);
   const std::string variable = first_variable(member.candidate->form);
   const Range range = range_of_lookup(variable, sizes);
   const std::string unit = variable == "time"       ? "s"
