@@ -14,7 +14,7 @@ bool may_be_doubtful(const std::vector<Member>& members);
 /// sample, L one second or two.
 std::vector<std::vector<char>> doubtful_rows(const Trials& trials, const Estimate& estimate);
 
-/// Adds every shape that may be doubtful a second time without its doubtful rows, computed for a member at
+/// Adds shapes that may be doubtful a second time without their doubtful rows, computed for a member at
 /// its initial values: an impact predicted at the wrong moment would be evidence against the right gap.
 void add_without_doubt(const Trials& trials, const Motion& motion, std::vector<Shape>& shapes);
 

@@ -9,7 +9,7 @@ namespace loopwright::diagnosis {
 namespace {
 
 constexpr size_t most_instants = 3;
-/// [rows] On either side of a jump: fewer do not tell it from an event at an end of the record.
+/// [rows that count] On either side of a jump: fewer do not tell it from a force that is there all the time.
 constexpr double least_side = 0.01;
 
 /// What a jump at each row explains, up to a factor: the square of what the errors have in common with a
@@ -17,12 +17,14 @@ constexpr double least_side = 0.01;
 std::vector<double> explained_by_jumps(const Trial& trial, const Fitted& fitted) {
   const std::vector<double> weight = adjoint(trial, fitted, Acts::force);
   const size_t rows = std::min(weight.size(), trial.held_out_from);
-  const double n = double(rows), whole = std::reduce(weight.begin(), weight.begin() + std::ptrdiff_t(rows));
+  const double whole = std::reduce(weight.begin(), weight.begin() + std::ptrdiff_t(rows)),
+               usable =
+                   double(std::count(trial.usable.begin(), trial.usable.begin() + std::ptrdiff_t(rows), 1));
   std::vector<double> explained(rows);
-  double after = 0;
+  double after = 0, usable_after = 0;
   for (size_t k = rows; k-- > 0;) {
-    after += weight[k];
-    const double share = double(rows - k) / n, common = after - whole * share;
+    after += weight[k], usable_after += trial.usable[k] ? 1 : 0;
+    const double share = usable_after / usable, common = after - whole * share;
     if (std::min(share, 1 - share) >= least_side) explained[k] = common * common / (share * (1 - share));
   }
   return explained;

@@ -10,6 +10,7 @@
 #include "tools/diagnose/search/jumps.h"
 #include "tools/diagnose/search/law_swaps.h"
 #include "tools/diagnose/search/laws_of_one_variable.h"
+#include "tools/diagnose/search/names.h"
 #include "tools/diagnose/search/other_starts.h"
 #include "tools/diagnose/search/prune.h"
 #include "tools/diagnose/search/remaining_force.h"
@@ -78,14 +79,21 @@ void Search::take(Estimate better) {
   leave_out_doubtful(trials_, best_);
 }
 
+double Search::worth_of_names(const std::vector<Member>& members) const {
+  return worth_losing_names(trials_) *
+         (int(has_function_without_name(best_.members)) - int(has_function_without_name(members)));
+}
+
 double Search::gain_of(Estimate& trial) {
   if (!trial.is_valid) return -std::numeric_limits<double>::infinity();
-  if (!may_be_doubtful(trial.members) || may_be_doubtful(best_.members)) return score(best_) - score(trial);
+  const double named = worth_of_names(trial.members);
+  if (!may_be_doubtful(trial.members) || may_be_doubtful(best_.members))
+    return named + score(best_) - score(trial);
   // Without the rows that are doubtful for the trial, both may differ.
   leave_out_doubtful(trials_, trial);
   trial = refined_further(trial), leave_out_doubtful(trials_, trial);
   trial = refined_further(trial);
-  const double gain = score(refined_further(best_)) - score(trial);
+  const double gain = named + score(refined_further(best_)) - score(trial);
   leave_out_doubtful(trials_, best_);
   return gain;
 }

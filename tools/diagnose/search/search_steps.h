@@ -29,7 +29,9 @@ class Search {
   void note(const std::vector<Proposal>& proposals) { trail_.push_back(described(proposals)); }
   void take(Estimate better);
 
-  /// Improvement of the criterion of a trial over the best set, on the same rows.
+  /// What names for all gain over the best set, or what it loses for want of them.
+  double worth_of_names(const std::vector<Member>& members) const;
+  /// Improvement of the criterion of a trial over the best set, on the same rows, with the worth of names.
   double gain_of(Estimate& trial);
   Estimate refined_further(const Estimate& e) { return fit_members(trials_, e.members, noise_, e.motion, 2); }
 
