@@ -91,6 +91,7 @@ TEST(ImprovedDiagram, StatesAForceThatJumpsAsAStepAtItsInstantByTheClockOfTheRec
       << text.substr(step, 100);
   EXPECT_NEAR(instant, truth.step_s, hidden_sample_time);
   EXPECT_NEAR(level, truth.step_n, 0.02);
+  EXPECT_THAT(to_text(d), HasSubstr("+ a force that jumps at 2.41"));
   EXPECT_THAT(to_text(d), HasSubstr("is a step at 2.41"));
   EXPECT_NEAR(residual_of(d, record), d.steps.back().force_rmse, 0.1 * d.steps.back().force_rmse)
       << to_text(d);

@@ -112,6 +112,12 @@ inline bool are_alike(const std::vector<Member>& one, const std::vector<Member>&
   return std::ranges::is_permutation(one, other, {}, &Member::candidate, &Member::candidate);
 }
 
+/// Unless the same candidates are among them.
+inline void add_if_other(std::vector<std::vector<Member>>& sets, std::vector<Member> set) {
+  if (std::ranges::none_of(sets, [&](const auto& other) { return are_alike(other, set); }))
+    sets.push_back(std::move(set));
+}
+
 /// Whether it makes a part of the mass move by itself.
 inline bool is_own_load(const Member& member) {
   const Candidate& candidate = *member.candidate;

@@ -232,10 +232,10 @@ bool Search::exchange() {
       if (proposals[i].gain >= -0.01 * evidence().rows())
         others.push_back(applied(proposals[i], best_.members));
     for (const Proposal& swap : shape_swaps(best_.members, candidates_))
-      others.push_back(applied(swap, best_.members));
+      add_if_other(others, applied(swap, best_.members));
     if (has_gain(best_.members))
       for (const Proposal& swap : law_swaps(best_.members, candidates_, trials_))
-        others.push_back(applied(swap, best_.members));
+        add_if_other(others, applied(swap, best_.members));
     double best_gain = criteria::clearly_better;
     Estimate best = best_of(others, best_gain);
     if (!best.is_valid) return any;

@@ -5,15 +5,6 @@
 #include "tools/diagnose/search/spectrum.h"
 
 namespace loopwright::diagnosis {
-namespace {
-
-/// Unless the same candidates are among them.
-void add_if_other(std::vector<std::vector<Member>>& starts, std::vector<Member> start) {
-  if (std::ranges::none_of(starts, [&](const auto& other) { return are_alike(other, start); }))
-    starts.push_back(std::move(start));
-}
-
-}  // namespace
 
 std::vector<const Shape*> Search::shapes_without_name() {
   nameless_ = shapes_of(unknown_, best_.motion);

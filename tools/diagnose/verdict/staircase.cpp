@@ -1,4 +1,5 @@
 #include "tools/diagnose/verdict/staircase.h"
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 #include "tools/diagnose/criteria.h"
@@ -130,6 +131,12 @@ std::string shown_name(const Candidate& candidate) {
   return candidate.is_unknown ? "an unknown force of " + candidate.form : candidate.name;
 }
 
+std::string shown_name(const Member& member, const Trials& trials) {
+  if (!member.candidate->jumps) return shown_name(*member.candidate);
+  return fmt::format("a force that jumps at {:.5g} s",
+                     trials.list.front().model->record().start + member.nonlinear[0]);
+}
+
 Staircase climb(Trials& trials, const Conclusion& conclusion, const std::vector<InverseDynamics>& inverse,
                 size_t catalogue) {
   Staircase result;
@@ -145,7 +152,7 @@ Staircase climb(Trials& trials, const Conclusion& conclusion, const std::vector<
                              [&](size_t m) { return corrects_nominal(conclusion.estimate.members[m]); });
     result.members.push_back(stage.estimate.members), result.added.push_back(added);
     for (size_t m : added)
-      step.added.push_back(shown_name(*conclusion.estimate.members[m].candidate)), result.order.push_back(m);
+      step.added.push_back(shown_name(conclusion.estimate.members[m], trials)), result.order.push_back(m);
     const ResidualSize size = residual_size(trials, inverse, stage.estimate.members);
     step.force_rmse = size.fitted, step.held_out_force_rmse = size.held_out;
     before = stage.members;

@@ -19,6 +19,8 @@ struct Staircase {
 
 /// "cogging", "an unknown force of position".
 std::string shown_name(const Candidate& candidate);
+/// The same with the instant of a jump, by the clock of the record.
+std::string shown_name(const Member& member, const Trials& trials);
 
 /// Removes the members again, each time the least important one; the remaining ones are fitted again.
 /// Corrections of the nominal diagram's own mass and damping are removed with the effect without which they
