@@ -1,11 +1,11 @@
-/// y = u (g + d (1 - exp(-t/T)))
+/// y = u (g + d (1 - exp(-(t - t0)/T))), cold until t0
 #include "engine/block.h"
 
 namespace loopwright::blocks {
 
 /// A gain that changes as the machine warms up: the force constant of a magnet, the viscosity of grease.
 template <class Real> struct ThermalDrift {
-  Real drift, time_constant, cold = 1.0;
+  Real drift, time_constant, cold = 1.0, start = 0.0;
   Real rate_constant;
   struct In {
     Real u;
@@ -21,12 +21,15 @@ template <class Real> struct ThermalDrift {
                  parameter(&ThermalDrift::cold, "cold", "",
                            "g: gain at the start; 0 leaves only what comes with the warmth")
                      .optional(),
+                 parameter(&ThermalDrift::start, "start", "s", "t0: when it begins to warm up").optional(),
                  input(&In::u, "u", "$u", "Signal"),
                  output(&Out::y, "y", "$u", "The signal with its gain drifted"));
   }
   void prepare(double) { rate_constant = 1.0 / time_constant; }
   void outputs(const Instant& now, const In& in, Out& out) const {
-    out.y = in.u * (cold + drift * (1.0 - exponential(-now.time * rate_constant)));
+    const Real passed = Real(now.time) - start;
+    const Real warm = select(passed > 0.0, passed, Real(0.0));
+    out.y = in.u * (cold + drift * (1.0 - exponential(-warm * rate_constant)));
   }
 };
 LOOPWRIGHT_BLOCK(ThermalDrift)

@@ -1,5 +1,6 @@
 #include "tools/diagnose/inquiry.h"
 #include <algorithm>
+#include <utility>
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/doubt.h"
 #include "tools/diagnose/search/friction_at_reversals.h"
@@ -27,7 +28,8 @@ Conclusion Inquiry::with_names() {
   const SearchResult found = searched();
   const Estimate& e = found.estimate;
   // What remains unexplained anyway also appears there.
-  if (explains_fitted_rows(e) && holds_out_something_else(e) && holds_out_something_else(with_fitted_noise(e)))
+  if (explains_fitted_rows(e) && holds_out_something_else(e) &&
+      holds_out_something_else(with_fitted_noise(e)))
     return with_all_rows(found.trail, e);
   Conclusion conclusion = concluded(found.trail, e);
   if (conclusion.is_white() && holds_out_something_else(conclusion.estimate))
@@ -58,16 +60,10 @@ Conclusion Inquiry::without(const Conclusion& conclusion, size_t member) {
   return rest;
 }
 
-SearchResult Inquiry::searched(const Estimate* before) {
-  constexpr int iterations = 8;
+SearchResult Inquiry::searched() {
   forget_reversals(trials_);
   const std::vector<Shape>& shapes = shapes_along_fitted_rows();
   progress_("searching", 0.4);
-  if (before) {
-    Estimate again = fit_members(trials_, before->members, before->noise, fitted_motion_, iterations);
-    if (trials_.work->is_spent(criteria::work_of_search) || explains_fitted_rows(again))
-      return {std::move(again), {}};
-  }
   return search(trials_, catalogue_.candidates, shapes, unknown_, fitted_motion_);
 }
 
@@ -97,11 +93,10 @@ Conclusion Inquiry::gone_on(Conclusion conclusion, const std::vector<Member>& se
   forget_reversals(trials_);
   SearchResult again =
       search_on(trials_, catalogue_.candidates, shapes_along_fitted_rows(), unknown_, fitted_motion_, named);
+  std::ranges::copy(again.trail, std::back_inserter(conclusion.trail));
   const bool leaves_much = !again.estimate.is_valid || again.estimate.mean_square >= criteria::much_left;
   if (!leaves_much && !are_alike(again.estimate.members, members)) {
-    std::vector<std::string> trail = conclusion.trail;
-    std::ranges::move(again.trail, std::back_inserter(trail));
-    Conclusion next = concluded(std::move(trail), again.estimate);
+    Conclusion next = concluded(conclusion.trail, again.estimate);
     const bool leaves_nothing = next.is_white() && !has_function_without_name(next.estimate.members);
     if (leaves_nothing && is_better(next, conclusion)) return next;
     conclusion.trail = std::move(next.trail);
@@ -129,11 +124,34 @@ bool Inquiry::is_better(const Conclusion& next, const Conclusion& before) {
 }
 
 Conclusion Inquiry::with_all_rows(std::vector<std::string> trail, const Estimate& found) {
-  for (Trial& trial : trials_.list) trial.held_out_from = trial.usable.size();
+  constexpr int iterations = 8;
+  std::vector<size_t> held_out_from;
+  for (Trial& trial : trials_.list) {
+    held_out_from.push_back(trial.held_out_from);
+    trial.held_out_from = trial.usable.size();
+  }
   fits_all_rows_ = true;
-  SearchResult again = searched(&found);
-  std::ranges::move(again.trail, std::back_inserter(trail));
-  return concluded(std::move(trail), again.estimate);
+  forget_reversals(trials_);
+  shapes_along_fitted_rows();
+  Estimate again = fit_members(trials_, found.members, found.noise, fitted_motion_, iterations);
+  leave_out_doubtful(trials_, again);
+  const bool explains_all = explains_fitted_rows(again) && explains_rows_from(held_out_from, again);
+  if (!explains_all && !trials_.work->is_spent(criteria::work_of_search)) {
+    SearchResult anew = searched();
+    std::ranges::move(anew.trail, std::back_inserter(trail));
+    again = std::move(anew.estimate);
+  }
+  return concluded(std::move(trail), again);
+}
+
+bool Inquiry::explains_rows_from(std::vector<size_t> rows, const Estimate& estimate) {
+  const auto exchange = [&] {
+    for (size_t t = 0; t < rows.size(); ++t) std::swap(trials_.list[t].held_out_from, rows[t]);
+  };
+  exchange();
+  const double left = mean_square(trials_, *estimate.fitted, true);
+  exchange();
+  return left < criteria::well_explained;
 }
 
 Estimate Inquiry::with_fitted_noise(Estimate estimate) {

@@ -26,8 +26,9 @@ class Inquiry {
 
  private:
   bool explains_fitted_rows(const Estimate& estimate) const;
-  /// `before`: what was found in fewer rows, and is kept where it explains these too, or no work is left.
-  SearchResult searched(const Estimate* before = nullptr);
+  /// Of the records from these rows on.
+  bool explains_rows_from(std::vector<size_t> rows, const Estimate& estimate);
+  SearchResult searched();
   /// After what was tried before.
   Conclusion concluded(std::vector<std::string> trail, const Estimate& found);
   /// Where at most half of the conclusion is of the set that was `searched`, and it leaves something, or
@@ -35,6 +36,8 @@ class Inquiry {
   /// better.
   Conclusion gone_on(Conclusion conclusion, const std::vector<Member>& searched);
   bool is_better(const Conclusion& next, const Conclusion& before);
+  /// What was found in fewer rows, fitted again, where it explains all of them or no work is left; otherwise
+  /// what a search finds.
   Conclusion with_all_rows(std::vector<std::string> trail, const Estimate& found);
   /// The noise of the search is known only partly.
   Estimate with_fitted_noise(Estimate estimate);

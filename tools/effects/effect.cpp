@@ -20,6 +20,7 @@ const std::vector<NamedSize> record_sizes = {
     {"machine_damping", "$force*s/$position", &RecordSizes::machine_damping},
     {"resolution", "$position", &RecordSizes::resolution},
     {"duration", "s", &RecordSizes::duration},
+    {"record_start", "s", &RecordSizes::start},
     {"sample_time", "s", &RecordSizes::sample_time},
     {"initial_position", "$position", &RecordSizes::initial_position},
     {"initial_velocity", "$position/s", &RecordSizes::initial_velocity},

@@ -34,7 +34,8 @@ struct RecordSizes {
   double machine_damping = 0;   ///< [force s/position] of the nominal model
   double resolution = 0;        ///< [position] of the measured position
   double duration = 0;          ///< [s]
-  double start = 0;             ///< [s] by the clock of the records; NaN: theirs begin at different times
+  double start = 0;             ///< [s] by the clock of the record, the first one of several
+  bool clocks_differ = false;   ///< the others begin at other times
   double sample_time = 1e-3;    ///< [s]
   double initial_position = 0;  ///< [position] first sample
   double initial_velocity = 0;  ///< [position/s]

@@ -36,7 +36,10 @@ double EffectValues::evaluate(const Value& value) const {
 
 std::string EffectValues::with_unit(const Value& value, const Effect& effect,
                                     const MachineUnits& units) const {
-  const std::string number = readable_number(evaluate(value));
+  // A clock may be that of the day.
+  const bool is_by_clock = value.kind == Value::Kind::text && value.text == "=record_start";
+  const double exact = evaluate(value);
+  const std::string number = is_by_clock ? fmt::format("{}", exact) : readable_number(exact);
   if (value.kind != Value::Kind::text || !value.text.starts_with('=')) return number;
   Quantity quantity;
   ExpressionSite site{value.place, "", {}};

@@ -90,6 +90,7 @@ struct HiddenMachine {
   std::optional<double> velocity_noise;  ///< measured with this noise; empty: not measured
   bool measures_position = true, has_controller = true;
   double leaves_out_s = 0;  ///< of the start of every record
+  double clock_s = 0;       ///< what the clock of the records shows when the motion begins
   double unfelt_noise = 0;  ///< of the recorded input, that the machine does not feel
   /// What arrives of a command at a time; empty: all of it.
   std::function<double(double command, double time)> drive;
@@ -171,7 +172,7 @@ class HiddenAxis {
       const double felt = machine_.drive ? machine_.drive(force, t) : force;
       if (machine_.unfelt_noise > 0) force += machine_.unfelt_noise * random_normal(&random);
       if (t >= machine_.leaves_out_s && !is_lost)
-        out << fmt::format("{:.3f},{:.10g},{},{}\n", t, force / machine_.newtons_per_column,
+        out << fmt::format("{:.3f},{:.10g},{},{}\n", machine_.clock_s + t, force / machine_.newtons_per_column,
                            k % machine_.reads_position_every == 0 ? fmt::format("{:.10g}", seen) : "",
                            k % machine_.reads_velocity_every == 0 ? fmt::format("{:.10g}", velocity) : "");
       plant_sample(&plant, felt, scale * random_normal(&random) + slow);

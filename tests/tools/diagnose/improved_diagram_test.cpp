@@ -69,10 +69,10 @@ TEST(ImprovedDiagram, ContainsAnUnknownFunctionAsALookupWithItsRange) {
       << to_text(d);
 }
 
-/// Something that gives way in the middle of a record. Its clock does not begin at zero.
+/// Something that gives way in the middle of a record, whose clock is that of the day.
 TEST(ImprovedDiagram, StatesAForceThatJumpsAsAStepAtItsInstantByTheClockOfTheRecord) {
   HiddenMachine machine;
-  machine.leaves_out_s = 0.15;
+  machine.leaves_out_s = 0.15, machine.clock_s = 43200;
   HiddenAxis axis(machine);
   Physics truth = axis.nominal();
   truth.step_n = -0.5, truth.step_s = 2.4134, truth.coulomb_n = 0.3;
@@ -89,11 +89,25 @@ TEST(ImprovedDiagram, StatesAForceThatJumpsAsAStepAtItsInstantByTheClockOfTheRec
   ASSERT_EQ(
       std::sscanf(text.c_str() + step, R"("type": "Step", "time": %lf, "after": %lf)", &instant, &level), 2)
       << text.substr(step, 100);
-  EXPECT_NEAR(instant, truth.step_s, hidden_sample_time);
+  EXPECT_NEAR(instant, machine.clock_s + truth.step_s, hidden_sample_time);
   EXPECT_NEAR(level, truth.step_n, 0.02);
-  EXPECT_THAT(to_text(d), HasSubstr("+ a force that jumps at 2.41"));
-  EXPECT_THAT(to_text(d), HasSubstr("is a step at 2.41"));
+  EXPECT_THAT(to_text(d), HasSubstr("+ a force that jumps at 43202.41"));
+  EXPECT_THAT(to_text(d), HasSubstr("is a step at 43202.41"));
   EXPECT_NEAR(residual_of(d, record), d.steps.back().force_rmse, 0.1 * d.steps.back().force_rmse)
+      << to_text(d);
+}
+
+/// The machine is cold when the record begins, whatever its clock shows.
+TEST(ImprovedDiagram, WarmsUpFromTheBeginningOfTheRecord) {
+  HiddenMachine machine;
+  machine.clock_s = 600;
+  HiddenAxis axis(machine);
+  Physics truth = axis.nominal();
+  truth.drift_of = DRIFT_OF_OFFSET, truth.drift = 0.6, truth.drift_time_s = 4;
+  const std::string record = axis.record("record", truth, there_and_back(0.2, 0.4));
+  const Diagnosis d = written(axis, record);
+  EXPECT_THAT(names(d), testing::ElementsAre("thermal_drift")) << to_text(d);
+  EXPECT_NEAR(residual_of(d, record), d.steps.back().force_rmse, 0.15 * d.steps.back().force_rmse)
       << to_text(d);
 }
 

@@ -317,8 +317,10 @@ std::string hidden_by_controller(const Effect& effect) {
 }
 
 Catalogue make_catalogue(const std::vector<std::string>& folders, const MachineUnits& units,
-                         const RecordSizes& sizes, const WhyNot& why_not, bool rows_are_uneven) {
+                         const RecordSizes& of_records, const WhyNot& why_not, bool rows_are_uneven) {
   Problems problems;
+  RecordSizes sizes = of_records;
+  sizes.start = 0;  // candidates run from the first row on
   RecordSizes sizes_in_parts = sizes;
   sizes_in_parts.sample_time /= parts_of_uneven_rows;
   Catalogue catalogue;

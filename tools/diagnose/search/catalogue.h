@@ -34,6 +34,6 @@ std::string hidden_by_controller(const Effect& effect);
 /// Effects that cannot be added, and effects whose numbers cannot be computed for these records, are left
 /// out. `rows_are_uneven`: see has_uneven_rows(). Throws InputError with every problem of the effect files.
 Catalogue make_catalogue(const std::vector<std::string>& folders, const MachineUnits& units,
-                         const RecordSizes& sizes, const WhyNot& why_not, bool rows_are_uneven);
+                         const RecordSizes& of_records, const WhyNot& why_not, bool rows_are_uneven);
 
 }  // namespace loopwright::diagnosis

@@ -95,13 +95,15 @@ std::vector<std::vector<char>> doubtful_rows(const Trials& trials, const Estimat
 }
 
 void add_without_doubt(const Trials& trials, const Motion& motion, std::vector<Shape>& shapes) {
-  // Away from the blows, whose moment each gap has for itself, the force changes little from one shape of the
-  // grid to the next.
-  constexpr size_t every = 4;
+  // Away from the blows, whose moment each gap has for itself, the force changes little from one shape of a
+  // fine grid to the next.
+  constexpr size_t every = 4, fine_grid = 8;
   std::vector<Shape> flying;
   for (size_t i = 0, along_grid = 0; i < shapes.size(); ++i) {
     along_grid = i > 0 && shapes[i].candidate == shapes[i - 1].candidate ? along_grid + 1 : 0;
-    if (shapes[i].candidate->flies && along_grid % every == every / 2) flying.push_back(shapes[i]);
+    if (!shapes[i].candidate->flies) continue;
+    const auto points = size_t(std::ranges::count(shapes, shapes[i].candidate, &Shape::candidate));
+    if (points < fine_grid || along_grid % every == every / 2) flying.push_back(shapes[i]);
   }
   for (auto first = flying.begin(); first != flying.end();) {
     const auto is_other = [&](const Shape& shape) { return shape.candidate != first->candidate; };

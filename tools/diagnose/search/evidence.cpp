@@ -251,7 +251,8 @@ bool Evidence::may_be_added(const Shape& shape, const std::vector<size_t>& remov
     const bool is_periodic = shape.candidate->is_periodic;
     const bool other_pitch = is_periodic && shape.candidate->is_repeatable &&
                              std::abs(shape.nonlinear[0] / member.nonlinear[0] - 1) > 0.02;
-    if (is_removed ? is_periodic || !is_far(shape.nonlinear, member.nonlinear) : !other_pitch) return false;
+    const bool is_near = !shape.candidate->jumps && !is_far(shape.nonlinear, member.nonlinear);
+    if (is_removed ? is_periodic || is_near : !other_pitch) return false;
   }
   return true;
 }
@@ -341,8 +342,9 @@ Proposal Evidence::best_pair(bool one_without_name) {
   for (size_t i = 0; i < best.size(); ++i)
     for (size_t j = i + 1; j < best.size(); ++j) {
       const size_t one = best[i].shape, other = best[j].shape;
-      if (one_without_name && shapes_[one]->candidate->is_unknown == shapes_[other]->candidate->is_unknown)
-        continue;
+      const int without_name =
+          int(shapes_[one]->candidate->is_unknown) + int(shapes_[other]->candidate->is_unknown);
+      if (without_name != int(one_without_name)) continue;
       multiply(one, other);
       if (const auto gain = gain_of({one, other}, errors, n_); gain && *gain > most)
         most = *gain, pair = {one, other};

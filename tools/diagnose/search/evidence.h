@@ -58,8 +58,8 @@ class Evidence {
   std::vector<Proposal> extensions() const { return extensions(n_); }
   /// The same with the savings of a record of `n` fitted numbers: the evidence may hold a part of them.
   std::vector<Proposal> extensions(double n) const;
-  /// The best two shapes together, from the best shapes of every candidate; if requested, one of them
-  /// unnamed.
+  /// The best two shapes together, from the best shapes of every candidate: both with a name, or one without
+  /// if that is requested.
   Proposal best_pair(bool one_without_name = false);
   /// A member, or two, replaced by one shape: the best for each candidate, best first.
   std::vector<Proposal> exchanges() const;

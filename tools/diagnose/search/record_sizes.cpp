@@ -1,7 +1,6 @@
 #include "tools/diagnose/search/record_sizes.h"
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include "models/real/whole.h"
 #include "tools/diagnose/criteria.h"
 
@@ -54,9 +53,10 @@ RecordSizes sizes_of(const std::vector<std::shared_ptr<const Path>>& paths,
   const double inertial = std::sqrt(squared_inertial / std::max(accelerations, 1.0));
   if (sizes.force_level < criteria::least_driving_share * inertial) sizes.force_level = inertial;
   sizes.sample_time = paths.front()->sample_time;
-  const double first = sizes.start = models.front()->record().start;
-  const auto begins_then = [&](const AxisModel* m) { return m->record().start == first; };
-  if (!std::ranges::all_of(models, begins_then)) sizes.start = std::numeric_limits<double>::quiet_NaN();
+  sizes.start = models.front()->record().start;
+  sizes.clocks_differ = std::ranges::any_of(models, [&](const AxisModel* model) {
+    return std::abs(model->record().start - sizes.start) > 0.5 * sizes.sample_time;
+  });
   return sizes;
 }
 

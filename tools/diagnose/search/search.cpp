@@ -25,6 +25,15 @@ constexpr size_t most_effects = 8, tried_extensions = 4, tried_exchanges = 3;
 /// stand for any long line, come after all of them.
 constexpr size_t most_steps_in_a_map = 16;
 
+/// The same candidates, whose shapes are no further apart than a fit reaches.
+bool are_near(const std::vector<Member>& one, const std::vector<Member>& other) {
+  return one.size() == other.size() && std::ranges::all_of(one, [&](const Member& member) {
+           return std::ranges::any_of(other, [&](const Member& m) {
+             return m.candidate == member.candidate && !is_far(m.nonlinear, member.nonlinear);
+           });
+         });
+}
+
 }  // namespace
 
 Search::Search(Trials& trials, const std::vector<Candidate>& candidates, const std::vector<Shape>& shapes,
@@ -55,14 +64,18 @@ SearchResult Search::run_on(const std::vector<Member>& members) {
   note("searched on");
   constexpr size_t most = 4;
   for (size_t step = 0; step < most && best_.is_valid; ++step) {
-    const double before = best_.mean_square;
+    const Estimate before = best_;
     if (!grow(1) || promised_mean_square(before, most - step - 1) >= criteria::much_left) break;
   }
   return {std::move(best_), std::move(trail_)};
 }
 
-double Search::promised_mean_square(double before, size_t further) const {
-  return best_.mean_square * std::pow(best_.mean_square / before, further);
+double Search::mean_square_now(const Estimate& e) const {
+  return fit_members(trials_, e.members, noise_, e.motion, 0).mean_square;
+}
+
+double Search::promised_mean_square(const Estimate& before, size_t further) const {
+  return best_.mean_square * std::pow(best_.mean_square / mean_square_now(before), further);
 }
 
 Estimate Search::refined(const std::vector<Member>& members, int iterations) {
@@ -136,6 +149,9 @@ bool Search::grow(size_t most) {
 
 bool Search::extend() {
   std::vector<Proposal> proposals = evidence().extensions();
+  for (Proposal& proposal : proposals)
+    if (has_function_without_name(proposal.added)) proposal.gain += worth_of_names(proposal.added);
+  std::ranges::stable_sort(proposals, std::ranges::greater{}, &Proposal::gain);
   note(proposals);
   const double single = proposals.empty() ? 0 : proposals.front().gain;
   if (proposals.size() > tried_extensions) proposals.resize(tried_extensions);
@@ -228,19 +244,19 @@ bool Search::exchange() {
     if (best_.members.empty() || is_spent()) return any;
     const std::vector<Proposal> proposals = evidence().exchanges();
     std::vector<std::vector<Member>> others;
-    for (size_t i = 0; i < std::min(tried_exchanges, proposals.size()); ++i)
-      if (proposals[i].gain >= -0.01 * evidence().rows())
-        others.push_back(applied(proposals[i], best_.members));
     for (const Proposal& swap : shape_swaps(best_.members, candidates_))
-      add_if_other(others, applied(swap, best_.members));
+      others.push_back(applied(swap, best_.members));
     if (has_gain(best_.members))
       for (const Proposal& swap : law_swaps(best_.members, candidates_, trials_))
-        add_if_other(others, applied(swap, best_.members));
+        others.push_back(applied(swap, best_.members));
+    for (size_t i = 0; i < std::min(tried_exchanges, proposals.size()); ++i)
+      if (proposals[i].gain >= -0.01 * evidence().rows())
+        add_if_other(others, applied(proposals[i], best_.members));
     double best_gain = criteria::clearly_better;
     Estimate best = best_of(others, best_gain);
     if (!best.is_valid) return any;
     if (best.members.size() > best_.members.size() && is_surpassed_by_extension(best_gain)) return any;
-    const bool goes_on_to_fit = are_alike(best.members, best_.members);
+    const bool goes_on_to_fit = are_near(best.members, best_.members);
     take(std::move(best)), any = true;
     note("exchanged");
     if (goes_on_to_fit) return any;

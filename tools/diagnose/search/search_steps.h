@@ -21,8 +21,10 @@ class Search {
   SearchResult run_on(const std::vector<Member>& members);
 
  private:
+  /// In the noise of the present state of the search.
+  double mean_square_now(const Estimate& e) const;
   /// The mean square after so many further steps, if each takes away as much as the last one did.
-  double promised_mean_square(double before, size_t further) const;
+  double promised_mean_square(const Estimate& before, size_t further) const;
   double score(const Estimate& e) const { return criterion(trials_, e, candidates_.size()); }
   Estimate refined(const std::vector<Member>& members, int iterations);
   void note(const char* what);
@@ -73,7 +75,7 @@ class Search {
   bool start_from_what_has_no_name();
 
   /// False when nothing more was found. Not to the end if it cannot leave less than another set.
-  bool grow_beside_function(double other_mean_square);
+  bool grow_beside_function(const Estimate& other);
 
   /// What has no name, for another function: beside the effects that were found since, the errors may ask for
   /// one that they hid.

@@ -3,6 +3,7 @@
 #include "tools/diagnose/search/names.h"
 #include "tools/diagnose/search/search_steps.h"
 #include "tools/diagnose/search/spectrum.h"
+#include "tools/diagnose/search/whiteness.h"
 
 namespace loopwright::diagnosis {
 
@@ -67,12 +68,13 @@ bool Search::start_from_what_has_no_name() {
     take(refined(start, 4));
     if (!best_.is_valid || score(best_) >= score(nominal)) continue;
     note("started without a name");
-    const bool is_grown = !grow_beside_function(best.mean_square);
+    const bool is_grown = !grow_beside_function(best);
     best = fit_members(trials_, best.members, noise_, best.motion, 1);  // noise in its present state
     const bool loses_names =
         has_function_without_name(best_.members) && !has_function_without_name(best.members);
     const double least = loses_names ? worth_losing_names(trials_) : 0;
-    const bool leaves_nothing = is_grown && best_.mean_square < criteria::well_explained;
+    const bool leaves_nothing = is_grown && best_.mean_square < criteria::well_explained &&
+                                portmanteau(trials_, *best_.fitted) <= criteria::most_portmanteau_of_search;
     is_complete = score(best_) < score(best) - least;
     if (is_complete) best = std::move(best_);
     is_complete &= leaves_nothing;
@@ -83,11 +85,11 @@ bool Search::start_from_what_has_no_name() {
   return is_complete;
 }
 
-bool Search::grow_beside_function(double other_mean_square) {
+bool Search::grow_beside_function(const Estimate& other) {
   constexpr size_t further = 3;
-  const double before = best_.mean_square;
+  const Estimate before = best_;
   if (!grow(1)) return false;
-  if (promised_mean_square(before, further) >= other_mean_square) return true;
+  if (promised_mean_square(before, further) >= mean_square_now(other)) return true;
   if (best_.mean_square >= criteria::well_explained) exchange_function();
   return grow(further);
 }
@@ -101,7 +103,7 @@ void Search::exchange_function() {
   Estimate better;
   for (const Proposal& proposal : without_name()) {
     Estimate trial = refined(applied(proposal, best_.members), 4);
-    if (!trial.is_valid || are_alike(trial.members, present.members) || score(trial) >= least) continue;
+    if (!trial.is_valid || score(trial) >= least) continue;
     least = score(trial), better = std::move(trial);
   }
   take(better.is_valid ? better : present);

@@ -136,6 +136,10 @@ Candidate jump(const RecordSizes& sizes) {
 
 }  // namespace
 
+std::pair<double, double> range_of_time(const RecordSizes& sizes) {
+  return {std::min(criteria::settling_s, 0.5 * sizes.duration), sizes.duration};
+}
+
 std::vector<double> times_of(const Path& path) {
   std::vector<double> times{0};
   for (size_t k = 0; k < path.samples(); ++k)
@@ -158,6 +162,11 @@ std::vector<Candidate> unknown_forces(const RecordSizes& sizes, bool is_map, boo
   const double low = sizes.lowest_position, high = sizes.highest_position, top = sizes.top_speed;
   const Variable one = each_sample([](const Path&, size_t) { return 1.0; });
   const Variable acceleration = each_sample([](const Path& path, size_t k) { return path.acceleration[k]; });
+  const Variable time = [](const Path& path) {
+    std::vector<double> middle = times_of(path);
+    for (size_t k = 0; k < path.samples(); ++k) middle[k] = 0.5 * (middle[k] + middle[k + 1]);
+    return middle;
+  };
   const Variable position = each_sample(middle_position), velocity = each_sample(middle_velocity);
   const Variable direction = direction_of(transition_of_direction(sizes));
   Candidate of_velocity = spline("velocity", 24, -top, top, velocity, one);
@@ -170,7 +179,7 @@ std::vector<Candidate> unknown_forces(const RecordSizes& sizes, bool is_map, boo
   if (has_mass) of_acceleration = mass_along(std::move(of_acceleration));
   return {of_position,
           std::move(of_velocity),
-          spline("time", 40, 0, sizes.duration, times_of, one),
+          spline("time", 40, range_of_time(sizes).first, range_of_time(sizes).second, time, one),
           of_direction,
           spline("position,velocity", 24, low, high, position, velocity),
           std::move(of_acceleration),

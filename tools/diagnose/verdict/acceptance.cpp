@@ -265,7 +265,7 @@ Acceptance accept(Conclusion conclusion, Trials& trials, const std::vector<Inver
     if (!state.why_not_run.empty()) state.runs.clear();
     if (!refusal) break;
     const Member& member = state.conclusion.estimate.members[refusal->member];
-    const std::string name = shown_name(*member.candidate);
+    const std::string name = shown_name(member, trials);
     state.refused.push_back({name, refusal->why, refusal->is_of_sensor, is_blurred(trials, member)});
     std::vector<std::string> trail = state.conclusion.trail;
     trail.push_back(name + ": " + refusal->why);

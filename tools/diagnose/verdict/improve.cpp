@@ -103,14 +103,19 @@ Additions Improver::additions(std::vector<Member> members) const {
       const std::optional<Effect> effect = effect_of_unknown(member, sizes_);
       const std::string range = range_of_unknown(member, sizes_, units_);
       if (!effect) {
-        result.not_stated.push_back("The unknown function of " + candidate.form +
-                                    " is not in the diagram: no block can state it.");
+        result.not_stated.push_back("The unknown function of " + candidate.form + " is not in the diagram: " +
+                                    (candidate.form == "time"
+                                         ? "the clocks of the records begin at different times."
+                                         : "no block can state it."));
         continue;
       }
       added.effect = *effect;
       if (!range.empty()) added.note = "The unknown function of " + candidate.form + " is " + range + ".";
     } else {
       added.effect = catalogue_.effects[size_t(&candidate - catalogue_.candidates.data())];
+      if (sizes_.clocks_differ && added.effect.name == "thermal_drift")
+        added.note =
+            "thermal_drift begins with the first record; the clocks of the others begin at other times.";
     }
     added.fitted = fitted_values(added.effect, member);
     result.effects.push_back(std::move(added));

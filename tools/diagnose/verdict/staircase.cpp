@@ -1,9 +1,9 @@
 #include "tools/diagnose/verdict/staircase.h"
-#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/evidence.h"
+#include "tools/diagnose/verdict/unknown_effect.h"
 
 namespace loopwright::diagnosis {
 namespace {
@@ -133,8 +133,8 @@ std::string shown_name(const Candidate& candidate) {
 
 std::string shown_name(const Member& member, const Trials& trials) {
   if (!member.candidate->jumps) return shown_name(*member.candidate);
-  return fmt::format("a force that jumps at {:.5g} s",
-                     trials.list.front().model->record().start + member.nonlinear[0]);
+  const AxisRecord& record = trials.list.front().model->record();
+  return "a force that jumps at " + told_instant(record.start + member.nonlinear[0], record.sample_time);
 }
 
 Staircase climb(Trials& trials, const Conclusion& conclusion, const std::vector<InverseDynamics>& inverse,

@@ -19,13 +19,17 @@ struct Range {
 };
 Range range_of_lookup(const std::string& variable, const RecordSizes& sizes) {
   if (variable == "velocity") return {-sizes.top_speed, sizes.top_speed};
-  if (variable == "time") return {sizes.start, sizes.start + sizes.duration};
+  if (variable == "time")
+    return {sizes.start + range_of_time(sizes).first, sizes.start + range_of_time(sizes).second};
   return {sizes.lowest_position, sizes.highest_position};
 }
 
-std::string list_of(const std::vector<double>& numbers) {
+/// A clock may be that of the day: its numbers keep all their digits.
+std::string exact_number(double number) { return fmt::format("{}", number); }
+
+std::string list_of(const std::vector<double>& numbers, std::string (*text_of)(double)) {
   std::string text;
-  for (double number : numbers) text += (text.empty() ? "" : ", ") + readable_number(number);
+  for (double number : numbers) text += (text.empty() ? "" : ", ") + text_of(number);
   return "[" + text + "]";
 }
 
@@ -33,7 +37,7 @@ std::string list_of(const std::vector<double>& numbers) {
 /// curvature's height over an interval.
 constexpr size_t points_per_interval = 3;
 
-std::string lookup(const Member& member, const Range& range, const std::string& wire) {
+std::string lookup(const Member& member, const Range& range, const std::string& wire, bool is_by_clock) {
   const size_t points = (member.linear.size() - spline_degree) * points_per_interval + 1;
   std::vector<double> at, value;
   for (size_t i = 0; i < points; ++i) {
@@ -43,7 +47,7 @@ std::string lookup(const Member& member, const Range& range, const std::string& 
   }
   return fmt::format(
       R"({{"type": "Lookup1D", "description": "No effect of the catalogue has this shape. Beyond the record its ends are held.", "breakpoints": {}, "values": {}, "interpolation": "linear", "outside": "hold", "in": {{"u": "{}"}}}})",
-      list_of(at), list_of(value), wire);
+      list_of(at, is_by_clock ? exact_number : readable_number), list_of(value, readable_number), wire);
 }
 
 /// Its phase is that at the first row.
@@ -51,7 +55,7 @@ std::string tone(const Member& member, double start) {
   const double turns = start / member.nonlinear[0];
   return fmt::format(R"({{"force": {{"type": "Sine", "amplitude": {}, "frequency": {}, "phase": {}}}}})",
                      readable_number(std::hypot(member.linear[0], member.linear[1])),
-                     readable_number(1 / member.nonlinear[0]),
+                     exact_number(1 / member.nonlinear[0]),
                      readable_number(std::remainder(
                          std::atan2(member.linear[1], member.linear[0]) - 2 * std::numbers::pi * turns,
                          2 * std::numbers::pi)));
@@ -59,18 +63,19 @@ std::string tone(const Member& member, double start) {
 
 std::string jump(const Member& member, double start) {
   return fmt::format(R"({{"force": {{"type": "Step", "time": {}, "after": {}}}}})",
-                     readable_number(start + member.nonlinear[0]), readable_number(member.linear[0]));
+                     exact_number(start + member.nonlinear[0]), readable_number(member.linear[0]));
 }
 
 /// The blocks, and the output that is the force.
 std::pair<std::string, std::string> blocks_of(const Member& member, const RecordSizes& sizes) {
   const std::string& form = member.candidate->form;
-  if (form == "time" && !std::isfinite(sizes.start)) return {};
+  if (form == "time" && sizes.clocks_differ) return {};
   if (member.candidate->is_periodic) return {tone(member, sizes.start), "force.y"};
   if (member.candidate->jumps) return {jump(member, sizes.start), "force.y"};
   const std::string variable = first_variable(form);
+  const bool is_by_clock = variable == "time";
   const std::string table =
-      lookup(member, range_of_lookup(variable, sizes), variable == "time" ? "clock.time" : variable);
+      lookup(member, range_of_lookup(variable, sizes), is_by_clock ? "clock.time" : variable, is_by_clock);
   if (form == "time")
     return {fmt::format(R"({{"clock": {{"type": "Clock"}}, "force": {}}})", table), "force.y"};
   if (form == "position,velocity")
@@ -107,15 +112,20 @@ std::optional<Effect> effect_of_unknown(const Member& member, const RecordSizes&
   return effect;
 }
 
+std::string told_instant(double time, double sample_time) {
+  const int digits = int(std::clamp(std::ceil(-std::log10(sample_time)), 0.0, 9.0));
+  return fmt::format("{:.{}f} s", time, digits);
+}
+
 std::string range_of_unknown(const Member& member, const RecordSizes& sizes, const MachineUnits& units) {
   if (member.candidate->is_periodic) return "";
-  if (member.candidate->jumps) return fmt::format("a step at {:.5g} s", sizes.start + member.nonlinear[0]);
+  if (member.candidate->jumps)
+    return "a step at " + told_instant(sizes.start + member.nonlinear[0], sizes.sample_time);
   const std::string variable = first_variable(member.candidate->form);
   const Range range = range_of_lookup(variable, sizes);
-  const std::string unit = variable == "time"       ? "s"
-                           : variable == "velocity" ? units.position + "/s"
-                                                    : units.position;
+  const std::string unit = variable == "velocity" ? units.position + "/s" : units.position;
   const auto shown = [&](double value) {
+    if (variable == "time") return told_instant(value, sizes.sample_time);
     const report::Quantity q = report::engineering(value, unit);
     return q.value + " " + q.unit;
   };

@@ -16,4 +16,7 @@ std::optional<Effect> effect_of_unknown(const Member& member, const RecordSizes&
 /// held", "a step at 23.4 s"; empty for a tone.
 std::string range_of_unknown(const Member& member, const RecordSizes& sizes, const MachineUnits& units);
 
+/// By a clock, to a sample.
+std::string told_instant(double time, double sample_time);
+
 }  // namespace loopwright::diagnosis
