@@ -21,7 +21,7 @@ struct CandidateParameter {
   double span = 0;    ///< for a period: the stroke or time over which it repeats; determines its resolution
   double centre = 0;  ///< for a period: the middle of the record, where the phase is known best
   double start = 0;   ///< a typical value
-  double step = 0;    ///< for its derivative, where it is felt over so short a part of the range; 0: any
+  double step = 0;    ///< that its derivative is computed with; 0: a part of its range or of its value
 
   /// Whether a value is at an end of the range; a fitted one is then reported as a warning, not as a result.
   bool ends_at(double value) const {
