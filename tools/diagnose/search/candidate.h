@@ -58,6 +58,8 @@ struct Candidate {
   bool jumps = false;            ///< at an instant, its only nonlinear parameter, which the errors tell
   LawOf law_of = LawOf::several;
   bool is_unknown = false;  ///< not from the catalogue, but any function of the variables in `form`
+  /// Of shapes; otherwise the errors tell its pitch or its instant.
+  bool has_grid() const { return !is_periodic && !jumps; }
   /// For several shapes together: cheaper than one after the other.
   std::function<std::vector<Columns>(const Path& path, const std::vector<std::vector<double>>& shapes)>
       columns_at;

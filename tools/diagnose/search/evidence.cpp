@@ -114,8 +114,7 @@ void add_shapes(const Candidate& candidate, const std::vector<std::vector<double
 std::vector<Shape> shapes_of(const std::vector<Candidate>& candidates, const Motion& motion) {
   std::vector<std::vector<Shape>> of_each(candidates.size());
   in_parallel(candidates.size(), [&](size_t i) {
-    if (!candidates[i].is_periodic && !candidates[i].jumps)
-      add_shapes(candidates[i], grid_points(candidates[i]), motion, of_each[i]);
+    if (candidates[i].has_grid()) add_shapes(candidates[i], grid_points(candidates[i]), motion, of_each[i]);
   });
   std::vector<Shape> shapes;
   for (std::vector<Shape>& some : of_each) std::ranges::move(some, std::back_inserter(shapes));
@@ -248,11 +247,10 @@ bool Evidence::may_be_added(const Shape& shape, const std::vector<size_t>& remov
     const Member& member = members_[m];
     if (member.candidate != shape.candidate) continue;
     const bool is_removed = std::ranges::find(removed, m) != removed.end();
-    const bool is_periodic = shape.candidate->is_periodic;
-    const bool other_pitch = is_periodic && shape.candidate->is_repeatable &&
+    const bool other_pitch = shape.candidate->is_periodic && shape.candidate->is_repeatable &&
                              std::abs(shape.nonlinear[0] / member.nonlinear[0] - 1) > 0.02;
-    const bool is_near = !shape.candidate->jumps && !is_far(shape.nonlinear, member.nonlinear);
-    if (is_removed ? is_periodic || is_near : !other_pitch) return false;
+    const bool is_near = shape.candidate->has_grid() && !is_far(shape.nonlinear, member.nonlinear);
+    if (is_removed ? shape.candidate->is_periodic || is_near : !other_pitch) return false;
   }
   return true;
 }
@@ -337,14 +335,13 @@ std::vector<Proposal> Evidence::extensions(double n) const {
 Proposal Evidence::best_pair(bool one_without_name) {
   const Errors errors = errors_without({});
   const std::vector<Promise> best = best_shapes(errors, n_);
+  const auto nameless = [&](size_t shape) { return int(shapes_[shape]->candidate->is_unknown); };
   std::vector<size_t> pair;
   double most = 0;
   for (size_t i = 0; i < best.size(); ++i)
     for (size_t j = i + 1; j < best.size(); ++j) {
       const size_t one = best[i].shape, other = best[j].shape;
-      const int without_name =
-          int(shapes_[one]->candidate->is_unknown) + int(shapes_[other]->candidate->is_unknown);
-      if (without_name != int(one_without_name)) continue;
+      if (nameless(one) + nameless(other) != int(one_without_name)) continue;
       multiply(one, other);
       if (const auto gain = gain_of({one, other}, errors, n_); gain && *gain > most)
         most = *gain, pair = {one, other};
