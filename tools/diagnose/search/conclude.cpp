@@ -12,6 +12,7 @@
 #include "tools/diagnose/search/one_direction.h"
 #include "tools/diagnose/search/remaining_force.h"
 #include "tools/diagnose/search/rivals.h"
+#include "tools/diagnose/search/shape_swaps.h"
 #include "tools/diagnose/search/spectrum.h"
 #include "tools/diagnose/search/whiteness.h"
 

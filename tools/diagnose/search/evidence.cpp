@@ -35,6 +35,11 @@ bool is_feasible(const Shape& shape, const Eigen::VectorXd& theta, Eigen::Index 
   return true;
 }
 
+/// Two functions without a name of the same variables take each other's part.
+bool state_one_function(const Candidate& one, const Candidate& other) {
+  return one.is_unknown && other.is_unknown && one.form == other.form;
+}
+
 }  // namespace
 
 bool is_far(const std::vector<double>& shape, const std::vector<double>& other) {
@@ -81,24 +86,6 @@ std::vector<Member> applied(const Proposal& proposal, std::vector<Member> member
     members.push_back(std::move(member));
   }
   return members;
-}
-
-std::vector<Proposal> shape_swaps(const std::vector<Member>& members,
-                                  const std::vector<Candidate>& candidates) {
-  std::vector<Proposal> list;
-  const auto is_member = [&](const Candidate& c) {
-    return std::ranges::find(members, &c, &Member::candidate) != members.end();
-  };
-  for (size_t m = 0; m < members.size(); ++m)
-    for (const Candidate& other : candidates) {
-      if (!members[m].candidate->amplitude_is_one || !other.amplitude_is_one || is_member(other)) continue;
-      const CandidateParameter& range = other.nonlinear[0];
-      Member member{&other, {1}, {std::clamp(members[m].nonlinear[0], range.low, range.high)}};
-      std::vector<Member> rest = members;
-      rest.erase(rest.begin() + std::ptrdiff_t(m));
-      list.push_back({{m}, {std::move(member)}, std::vector<double>(free_parameters(rest).size()), 0});
-    }
-  return list;
 }
 
 void add_shapes(const Candidate& candidate, const std::vector<std::vector<double>>& points,
@@ -245,8 +232,9 @@ Evidence::Errors Evidence::errors_without(const std::vector<size_t>& removed) co
 bool Evidence::may_be_added(const Shape& shape, const std::vector<size_t>& removed) const {
   for (size_t m = 0; m < members_.size(); ++m) {
     const Member& member = members_[m];
-    if (member.candidate != shape.candidate) continue;
     const bool is_removed = std::ranges::find(removed, m) != removed.end();
+    if (!is_removed && state_one_function(*member.candidate, *shape.candidate)) return false;
+    if (member.candidate != shape.candidate) continue;
     const bool other_pitch = shape.candidate->is_periodic && shape.candidate->is_repeatable &&
                              std::abs(shape.nonlinear[0] / member.nonlinear[0] - 1) > 0.02;
     const bool is_near = shape.candidate->has_grid() && !is_far(shape.nonlinear, member.nonlinear);

@@ -42,11 +42,6 @@ double left_by(double squares, double of);
 /// The members with the proposal applied.
 std::vector<Member> applied(const Proposal& proposal, std::vector<Member> members);
 
-/// Members that are pure shapes (a delay, a lag) replaced by another pure shape of the same size: they are
-/// equal to first order, and too nonlinear for the linearization to distinguish.
-std::vector<Proposal> shape_swaps(const std::vector<Member>& members,
-                                  const std::vector<Candidate>& candidates);
-
 /// Sums of squares of the errors, of the members' sensitivities, and of every shape.
 class Evidence {
  public:

@@ -14,6 +14,7 @@
 #include "tools/diagnose/search/other_starts.h"
 #include "tools/diagnose/search/prune.h"
 #include "tools/diagnose/search/remaining_force.h"
+#include "tools/diagnose/search/shape_swaps.h"
 #include "tools/diagnose/search/spectrum.h"
 #include "tools/diagnose/search/whiteness.h"
 

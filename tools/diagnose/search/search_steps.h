@@ -75,11 +75,11 @@ class Search {
   bool start_from_what_has_no_name();
 
   /// False when nothing more was found. Not to the end if it cannot leave less than another set.
-  bool grow_beside_function(const Estimate& other);
+  bool grow_beside_function(const Estimate& other, const std::vector<std::vector<Member>>& starts);
 
-  /// What has no name, for another function: beside the effects that were found since, the errors may ask for
-  /// one that they hid.
-  void exchange_function();
+  /// What has no name, for another function, with which no start begins: beside the effects that were found
+  /// since, the errors may ask for one that they hid.
+  void exchange_function(const std::vector<std::vector<Member>>& starts);
 
   /// Laws of one variable, for others of it that do better together.
   bool exchange_laws();

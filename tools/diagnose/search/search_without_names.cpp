@@ -68,7 +68,7 @@ bool Search::start_from_what_has_no_name() {
     take(refined(start, 4));
     if (!best_.is_valid || score(best_) >= score(nominal)) continue;
     note("started without a name");
-    const bool is_grown = !grow_beside_function(best);
+    const bool is_grown = !grow_beside_function(best, starts);
     best = fit_members(trials_, best.members, noise_, best.motion, 1);  // noise in its present state
     const bool loses_names =
         has_function_without_name(best_.members) && !has_function_without_name(best.members);
@@ -85,16 +85,16 @@ bool Search::start_from_what_has_no_name() {
   return is_complete;
 }
 
-bool Search::grow_beside_function(const Estimate& other) {
+bool Search::grow_beside_function(const Estimate& other, const std::vector<std::vector<Member>>& starts) {
   constexpr size_t further = 3;
   const Estimate before = best_;
   if (!grow(1)) return false;
   if (promised_mean_square(before, further) >= mean_square_now(other)) return true;
-  if (best_.mean_square >= criteria::well_explained) exchange_function();
+  if (best_.mean_square >= criteria::well_explained) exchange_function(starts);
   return grow(further);
 }
 
-void Search::exchange_function() {
+void Search::exchange_function(const std::vector<std::vector<Member>>& starts) {
   Estimate present = best_;
   const std::vector<Member> named = named_members(present.members);
   if (is_spent() || named.empty() || named.size() == present.members.size()) return;
@@ -102,6 +102,8 @@ void Search::exchange_function() {
   double least = score(present) - criteria::clearly_better;
   Estimate better;
   for (const Proposal& proposal : without_name()) {
+    const auto begins = [&](const std::vector<Member>& start) { return are_alike(start, proposal.added); };
+    if (std::ranges::any_of(starts, begins)) continue;
     Estimate trial = refined(applied(proposal, best_.members), 4);
     if (!trial.is_valid || score(trial) >= least) continue;
     least = score(trial), better = std::move(trial);
