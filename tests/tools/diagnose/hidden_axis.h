@@ -172,7 +172,8 @@ class HiddenAxis {
       const double felt = machine_.drive ? machine_.drive(force, t) : force;
       if (machine_.unfelt_noise > 0) force += machine_.unfelt_noise * random_normal(&random);
       if (t >= machine_.leaves_out_s && !is_lost)
-        out << fmt::format("{:.3f},{:.10g},{},{}\n", machine_.clock_s + t, force / machine_.newtons_per_column,
+        out << fmt::format("{:.3f},{:.10g},{},{}\n", machine_.clock_s + t,
+                           force / machine_.newtons_per_column,
                            k % machine_.reads_position_every == 0 ? fmt::format("{:.10g}", seen) : "",
                            k % machine_.reads_velocity_every == 0 ? fmt::format("{:.10g}", velocity) : "");
       plant_sample(&plant, felt, scale * random_normal(&random) + slow);

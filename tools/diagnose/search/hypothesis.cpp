@@ -14,7 +14,8 @@ namespace {
 /// A step in a nonlinear parameter for its derivative, within its range.
 double difference_step(const CandidateParameter& range, double at) {
   if (range.span > 0) return 0.003 * at * at / range.span;
-  const double step = range.step > 0 ? range.step : 1e-3 * (range.logarithmic ? std::abs(at) : range.high - range.low);
+  const double step =
+      range.step > 0 ? range.step : 1e-3 * (range.logarithmic ? std::abs(at) : range.high - range.low);
   return at + step > range.high ? -step : step;
 }
 
