@@ -11,6 +11,7 @@
 #include "tools/diagnose/search/whiteness.h"
 
 namespace loopwright::diagnosis {
+
 Inquiry::Inquiry(Trials& trials, const Motion& motion, const Catalogue& catalogue, const RecordSizes& sizes,
                  const std::function<void(const char*, double)>& progress)
     : trials_(trials),
