@@ -20,16 +20,11 @@ Inquiry::Inquiry(Trials& trials, const Motion& motion, const Catalogue& catalogu
       unknown_(unknown_forces(sizes, trials.has_map(), trials.has_mass())),
       progress_(progress) {}
 
-bool Inquiry::explains_fitted_rows(const Estimate& estimate) const {
-  return estimate.is_valid && estimate.mean_square < criteria::well_explained &&
-         portmanteau(trials_, *estimate.fitted) <= criteria::most_portmanteau_of_search;
-}
-
 Conclusion Inquiry::with_names() {
   const SearchResult found = searched();
   const Estimate& e = found.estimate;
   // What remains unexplained anyway also appears there.
-  if (explains_fitted_rows(e) && holds_out_something_else(e) &&
+  if (seems_explained(trials_, e) && holds_out_something_else(e) &&
       holds_out_something_else(with_fitted_noise(e)))
     return with_all_rows(found.trail, e);
   Conclusion conclusion = concluded(found.trail, e);
@@ -136,7 +131,7 @@ Conclusion Inquiry::with_all_rows(std::vector<std::string> trail, const Estimate
   shapes_along_fitted_rows();
   Estimate again = fit_members(trials_, found.members, found.noise, fitted_motion_, iterations);
   leave_out_doubtful(trials_, again);
-  const bool explains_all = explains_fitted_rows(again) && explains_rows_from(held_out_from, again);
+  const bool explains_all = seems_explained(trials_, again) && explains_rows_from(held_out_from, again);
   if (!explains_all && !trials_.work->is_spent(criteria::work_of_search)) {
     SearchResult anew = searched();
     std::ranges::move(anew.trail, std::back_inserter(trail));

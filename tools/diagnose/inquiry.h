@@ -25,7 +25,6 @@ class Inquiry {
   const Motion& motion_of_all_rows() const { return on_all_rows_.motion; }
 
  private:
-  bool explains_fitted_rows(const Estimate& estimate) const;
   /// Of the records from these rows on.
   bool explains_rows_from(std::vector<size_t> rows, const Estimate& estimate);
   SearchResult searched();

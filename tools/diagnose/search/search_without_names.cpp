@@ -73,8 +73,7 @@ bool Search::start_from_what_has_no_name() {
     const bool loses_names =
         has_function_without_name(best_.members) && !has_function_without_name(best.members);
     const double least = loses_names ? worth_losing_names(trials_) : 0;
-    const bool leaves_nothing = is_grown && best_.mean_square < criteria::well_explained &&
-                                portmanteau(trials_, *best_.fitted) <= criteria::most_portmanteau_of_search;
+    const bool leaves_nothing = is_grown && seems_explained(trials_, best_);
     is_complete = score(best_) < score(best) - least;
     if (is_complete) best = std::move(best_);
     is_complete &= leaves_nothing;

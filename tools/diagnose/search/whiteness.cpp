@@ -178,6 +178,11 @@ double portmanteau(const Trials& trials, const std::vector<Fitted>& fitted) {
   return most;
 }
 
+bool seems_explained(const Trials& trials, const Estimate& estimate) {
+  return estimate.is_valid && estimate.mean_square < criteria::well_explained &&
+         portmanteau(trials, *estimate.fitted) <= criteria::most_portmanteau_of_search;
+}
+
 double portmanteau_of_squares(const Trials& trials, const std::vector<Fitted>& fitted) {
   constexpr double largest = 3;  // [standard deviations] a single outlier is no burst
   std::vector<Fitted> squares(fitted.size());

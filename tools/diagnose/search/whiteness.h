@@ -20,6 +20,9 @@ size_t rows_in_a_lag(const Trials& trials);
 /// millisecond. Near 40 when the errors are white.
 double portmanteau(const Trials& trials, const std::vector<Fitted>& fitted);
 
+/// Whether a set leaves small errors that are white, as far as a search can tell.
+bool seems_explained(const Trials& trials, const Estimate& estimate);
+
 /// The same of the squares of the errors: how much large errors keep together in time. Noise makes none of
 /// it; a load that rattles, or anything that happens now and then, does.
 double portmanteau_of_squares(const Trials& trials, const std::vector<Fitted>& fitted);
