@@ -197,6 +197,11 @@ class Stepper {
   int64_t period_;
 };
 
+/// Whether nothing is known of the motion before this row.
+bool begins_anew(const MeasuredMotion& m, size_t row) {
+  return row == 0 || (m.is_missing(row - 1) && !m.is_missing(row));
+}
+
 /// Subtracts the position error of the model's sensor from the measured position. The machine is then where
 /// the sensor would give the measured value. Two iterations suffice for errors far smaller than their period.
 void take_out_sensor_error(Machine& machine) {
@@ -348,7 +353,8 @@ std::vector<double> model_acceleration(Machine& machine) {
   std::vector<double> acceleration, driven_force, other_force;
   double force_by_acceleration = 0, squared_acceleration = 0;
   for (size_t k = 0; k < m.rows(); ++k) {
-    stepper.set(m.position[k], m.velocity[k]), undriven.set(m.position[k], m.velocity[k]);
+    for (Stepper* run : {&stepper, &undriven})
+      begins_anew(m, k) ? run->restart(m.position[k], m.velocity[k]) : run->set(m.position[k], m.velocity[k]);
     const double before = stepper.evaluate();
     driven_force.push_back(before), other_force.push_back(undriven.evaluate());
     if (!stepper.step() || !undriven.step()) break;
@@ -372,8 +378,7 @@ std::vector<double> simulate_position(const Machine& machine, size_t horizon) {
   Stepper stepper(machine);
   std::vector<double> position;
   for (size_t k = 0; k < m.rows(); ++k) {
-    const bool is_behind_gap = k > 0 && m.is_missing(k - 1) && !m.is_missing(k);
-    if (k == 0 || is_behind_gap || (horizon > 0 && k % horizon == 0))
+    if (begins_anew(m, k) || (horizon > 0 && k % horizon == 0))
       stepper.restart(m.position[k], m.velocity[k]);
     position.push_back(stepper.position());
     if (!stepper.step()) break;
