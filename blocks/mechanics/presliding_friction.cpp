@@ -51,10 +51,14 @@ template <class Real> struct PreslidingFriction {
     per_speed = 1.0 / stribeck_speed;
     per_distance = 1.0 / transition_distance;
   }
+  /// [1] Of the level: so little is left to change after 28 transition distances. Rounding would keep some of
+  /// it for ever, by where the motion began.
+  static constexpr double nearly_nothing = 1e-12;
   Real fraction(const In& in, const Memory& memory) const {
     const Real way = in.position - memory.position;
     const Real direction = select(way < 0.0, Real(-1.0), Real(1.0));
-    const Real change = memory.fraction - direction;
+    const Real missing = memory.fraction - direction;
+    const Real change = select(absolute(missing) < nearly_nothing, Real(0.0), missing);
     // While it slides on, nothing is left to change: that needs no exponential, and has the same bits.
     const Real left = any(change != 0.0) ? exponential(-absolute(way) * per_distance) : 0.0 * way;
     return memory.has_begun * (direction + change * left);

@@ -227,9 +227,9 @@ template <class Take>
 void EffectRun::answer(const RoleSignals& signals, size_t rows, size_t lanes, Take&& take) {
   const std::span<const double> signal = held_->signal(signals);
   for (size_t lane = 0; lane < lanes; ++lane) {
-    const HeldResponse response = held_->response(fitted_[lane]);
+    const auto response = held_->response(fitted_[lane]);
     for (size_t row = 0; row < rows; ++row)
-      take(lane, row, response.mean(signal, row), response.slope(signal, row));
+      take(lane, row, response->mean(signal, row), response->slope(signal, row));
   }
 }
 

@@ -14,6 +14,8 @@ constexpr size_t tried_rows = 256, rows_of_a_magnitude = 16;
 constexpr double tolerance = 1e-9;
 /// Numbers that are remembered; more would cost more than they save.
 constexpr int most_numbers = 10000;
+/// Of a fit, before and after a step and with each parameter changed.
+constexpr size_t most_known = 8;
 
 bool reads_one_held_signal(const Plan& plan) {
   std::vector<std::string> signals;
@@ -78,19 +80,23 @@ std::vector<HeldEffect::Value> HeldEffect::run(const std::vector<double>& fitted
   return values;
 }
 
-HeldResponse HeldEffect::response(const std::vector<double>& fitted) {
+std::shared_ptr<const HeldResponse> HeldEffect::response(const std::vector<double>& fitted) {
+  for (const auto& [of, response] : known_)
+    if (of == fitted) return response;
   std::vector<double> one(remembered_rows());
   one[0] = 1;
   const std::vector<Value> values = run(fitted, one);
-  HeldResponse response;
+  auto response = std::make_shared<HeldResponse>();
   for (size_t k = 0; k < values.size(); ++k)
     if (values[k].mean != 0 || values[k].slope != 0)
-      response.rows.push_back({k, values[k].mean, values[k].slope});
+      response->rows.push_back({k, values[k].mean, values[k].slope});
+  known_.emplace_back(fitted, response);
+  if (known_.size() > most_known) known_.pop_front();
   return response;
 }
 
 bool HeldEffect::superposes(const std::vector<double>& fitted) {
-  const HeldResponse known = response(fitted);
+  const HeldResponse known = *response(fitted);
   HeldResponse sizes = known;
   for (HeldResponse::Row& row : sizes.rows) row.mean = std::abs(row.mean), row.slope = std::abs(row.slope);
   std::mt19937_64 random(1);

@@ -1,8 +1,10 @@
 /// Effects that are linear in one held signal and in its past, as a delay of the command is: a row of theirs
 /// is a sum over a few rows before it.
 #pragma once
+#include <deque>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 #include "tools/effects/effect_lanes.h"
 
@@ -24,7 +26,8 @@ class HeldEffect {
  public:
   explicit HeldEffect(std::shared_ptr<const EffectPlan> plan);
 
-  HeldResponse response(const std::vector<double>& fitted);
+  /// To these fitted parameters. A fit asks for the same along many motions: the last few are remembered.
+  std::shared_ptr<const HeldResponse> response(const std::vector<double>& fitted);
   /// For so many a signal can be remembered: what a response costs.
   size_t remembered_rows() const { return size_t(plan_->plan.buffer_numbers) + 2; }
   /// The one that the effect reads.
@@ -40,6 +43,7 @@ class HeldEffect {
 
   std::shared_ptr<const EffectPlan> plan_;
   EffectLanes lanes_;
+  std::deque<std::pair<std::vector<double>, std::shared_ptr<const HeldResponse>>> known_;  // the last one at the end
 };
 
 /// Whether the blocks remember only samples of one held signal, taken once a row, and superposition holds at

@@ -32,6 +32,7 @@ class SegmentRun {
   std::shared_ptr<const EffectPlan> plan_;
   EffectLanes lanes_;
   double way_before_;        // over which a segment is led to its first row, the same for all [stroke]
+  int in_turn_ = 0;          // runs for which no segments are tried
   std::vector<double> now_;  // of each lane [s]
 };
 

@@ -51,6 +51,16 @@ TEST(PreslidingFriction, DependsOnTheWayAndNotOnItsSteps) {
   }
 }
 
+/// Rounding would keep the last bits of where the motion began.
+TEST(PreslidingFriction, ForgetsItsPastAfterManyTransitionDistances) {
+  BlockUnderTest from_left("PreslidingFriction", R"({"level": 1, "transition_distance": 1e-3})"),
+      from_right("PreslidingFriction", R"({"level": 1, "transition_distance": 1e-3})");
+  move(from_left, -0.1), move(from_right, 0.1);
+  for (int k = 0; k <= 300; ++k) move(from_left, 1e-4 * k), move(from_right, 1e-4 * k);
+  EXPECT_EQ(from_left.output("fraction"), 1);
+  EXPECT_EQ(from_right.output("fraction"), 1);
+}
+
 TEST(PreslidingFriction, FallsWithSpeedAlongStribecksCurve) {
   for (const double exponent : {1.0, 1.4, 2.0}) {
     BlockUnderTest friction("PreslidingFriction",

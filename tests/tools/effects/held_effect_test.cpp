@@ -46,7 +46,7 @@ std::vector<double> changing_input(size_t rows) {
 TEST(HeldEffect, ALateCommandIsASumOverTheRowsBefore) {
   const auto plan = compiled(effect_named("input_delay"));
   ASSERT_TRUE(plan->is_held);
-  const HeldResponse response = HeldEffect(plan).response({2.25e-3});
+  const HeldResponse response = *HeldEffect(plan).response({2.25e-3});
   ASSERT_EQ(response.rows.size(), 3u);  // what is asked is taken away, what was asked comes
   EXPECT_EQ(response.rows[0].after, 0u);
   EXPECT_DOUBLE_EQ(response.rows[0].mean, -1);

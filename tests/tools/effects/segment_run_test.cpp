@@ -50,7 +50,7 @@ std::vector<double> starts_of(const EffectPlan& plan) {
 TEST(SegmentRun, DryFrictionHasTheBitsOfTheWholeRecordInTurn) {
   const bool has_lanes = widest_instruction_set() != InstructionSet::scalar;
   const Strokes strokes;
-  for (const char* name : {"coulomb_friction", "stribeck_friction"}) {
+  for (const char* name : {"coulomb_friction", "stribeck_friction", "presliding_hysteresis"}) {
     const auto plan = compiled(name);
     ASSERT_TRUE(plan->remembers_way) << name;
     SegmentRun segments(plan);
@@ -91,6 +91,17 @@ TEST(SegmentRun, WhatRemembersALongWayIsLeftToARunInTurn) {
   std::vector<double> a(strokes.rows()), b(strokes.rows());
   either.run(strokes.signals(), a), in_turn.run(strokes.signals(), b);
   EXPECT_EQ(a, b);
+}
+
+/// The steps of a row are short against the distance, and what is left of the last reversal fades to nothing.
+TEST(SegmentRun, AShorterDistanceIsRunInSegmentsAgainAfterSomeRunsInTurn) {
+  if (widest_instruction_set() == InstructionSet::scalar) GTEST_SKIP() << "one lane has no segments";
+  const Strokes strokes;
+  SegmentRun segments(compiled("presliding_hysteresis"));
+  std::vector<double> mean, slope;
+  EXPECT_FALSE(segments.run(strokes.signals(), strokes.rows(), {1, 0.06}, mean, slope));
+  int runs = 1;
+  while (!segments.run(strokes.signals(), strokes.rows(), {1, 1e-3}, mean, slope)) ASSERT_LT(++runs, 100);
 }
 
 TEST(SegmentRun, OnlyWhatRemembersTheWayAloneCanBeRunInSegments) {

@@ -320,7 +320,7 @@ std::vector<Proposal> Evidence::extensions(double n) const {
   return list;
 }
 
-Proposal Evidence::best_pair(bool one_without_name) {
+std::optional<Proposal> Evidence::best_pair(bool one_without_name) {
   const Errors errors = errors_without({});
   const std::vector<Promise> best = best_shapes(errors, n_);
   const auto nameless = [&](size_t shape) { return int(shapes_[shape]->candidate->is_unknown); };
@@ -334,7 +334,7 @@ Proposal Evidence::best_pair(bool one_without_name) {
       if (const auto gain = gain_of({one, other}, errors, n_); gain && *gain > most)
         most = *gain, pair = {one, other};
     }
-  return pair.empty() ? Proposal{} : with_step(pair, errors, most);
+  return pair.empty() ? std::nullopt : std::optional(with_step(pair, errors, most));
 }
 
 std::vector<std::vector<size_t>> Evidence::removals() const {

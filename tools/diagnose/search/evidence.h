@@ -54,8 +54,8 @@ class Evidence {
   /// The same with the savings of a record of `n` fitted numbers: the evidence may hold a part of them.
   std::vector<Proposal> extensions(double n) const;
   /// The best two shapes together, from the best shapes of every candidate: both with a name, or one without
-  /// if that is requested.
-  Proposal best_pair(bool one_without_name = false);
+  /// if that is requested. Empty: no two of them save anything.
+  std::optional<Proposal> best_pair(bool one_without_name = false);
   /// A member, or two, replaced by one shape: the best for each candidate, best first.
   std::vector<Proposal> exchanges() const;
   /// Some members replaced by one shape: every shape whose amplitudes are within their ranges, best first.

@@ -156,9 +156,9 @@ bool Search::extend() {
   note(proposals);
   const double single = proposals.empty() ? 0 : proposals.front().gain;
   if (proposals.size() > tried_extensions) proposals.resize(tried_extensions);
-  if (const Proposal pair = evidence().best_pair(); pair.gain > single + 10) {
-    if (pair.gain > 2 * single) proposals.resize(std::min<size_t>(proposals.size(), 2));
-    proposals.push_back(pair);
+  if (const std::optional<Proposal> pair = evidence().best_pair(); pair && pair->gain > single + 10) {
+    if (pair->gain > 2 * single) proposals.resize(std::min<size_t>(proposals.size(), 2));
+    proposals.push_back(*pair);
   }
   const double least = std::max(criteria::least_gain, criteria::least_gain_per_row * judged_numbers(trials_));
   std::vector<std::pair<double, Estimate>> tried;

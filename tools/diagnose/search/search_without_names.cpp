@@ -49,8 +49,8 @@ std::vector<std::vector<Member>> Search::starts_without_name() {
   evidence_.reset();  // its shapes are computed again
   std::vector<const Shape*> shapes = shapes_without_name();
   std::ranges::copy(all_shapes(), std::back_inserter(shapes));
-  Proposal pair = Evidence(trials_, best_, shapes, candidates_.size()).best_pair(true);
-  if (!pair.added.empty()) add_if_other(starts, std::move(pair.added));
+  std::optional<Proposal> pair = Evidence(trials_, best_, shapes, candidates_.size()).best_pair(true);
+  if (pair) add_if_other(starts, std::move(pair->added));
   return starts;
 }
 
