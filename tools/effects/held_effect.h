@@ -43,7 +43,8 @@ class HeldEffect {
 
   std::shared_ptr<const EffectPlan> plan_;
   EffectLanes lanes_;
-  std::deque<std::pair<std::vector<double>, std::shared_ptr<const HeldResponse>>> known_;  // the last one at the end
+  std::deque<std::pair<std::vector<double>, std::shared_ptr<const HeldResponse>>>
+      known_;  // the last one at the end
 };
 
 /// Whether the blocks remember only samples of one held signal, taken once a row, and superposition holds at
