@@ -20,6 +20,12 @@ size_t parts_of_a_sample(const RecordSizes& sizes) {
   return std::min(most, whole_count(std::ceil(way / (farthest * sizes.stroke))));
 }
 
+/// These do not change within a sample.
+bool reads_held_signals(const Effect& effect) {
+  return std::ranges::all_of(effect.reads,
+                             [](const std::string& role) { return role == "input" || role == "force"; });
+}
+
 std::span<const double> column_of(const RoleSignals& signals, std::string_view role) {
   return role == "position"       ? signals.position
          : role == "velocity"     ? signals.velocity
@@ -118,15 +124,16 @@ void EffectRun::give_at(double u, size_t rows) {
   give_each(lanes_->force, [](const RoleSample& s, double) { return s.force; });
 }
 
-/// ∫ f du and 12 ∫ (u - ½) f du over the sample, by two Gauss points in each part of it.
+/// ∫ f du and 12 ∫ (u - ½) f du over the sample, by two Gauss points in each part of it. What is held has one
+/// value in all of it.
 void EffectRun::mean_of(size_t rows, double now) {
-  const bool at_start = plan_->acts_on_sensor;
-  const size_t parts = parts_of_a_sample(plan_->sizes), points = at_start ? 1 : 2 * parts;
+  const bool at_start = plan_->acts_on_sensor, is_constant = reads_held_signals(plan_->effect);
+  const size_t parts = parts_of_a_sample(plan_->sizes), points = at_start || is_constant ? 1 : 2 * parts;
   const double weight = 1.0 / double(points);
   std::ranges::fill(area_, 0.0), std::ranges::fill(slope_, 0.0);
   for (size_t point = 0; point < points; ++point) {
     const double in_part = point % 2 == 0 ? gauss_point : 1 - gauss_point;
-    const double u = at_start ? 0 : (double(point / 2) + in_part) / double(parts);
+    const double u = at_start ? 0 : is_constant ? 0.5 : (double(point / 2) + in_part) / double(parts);
     give_at(u, rows);
     lanes_->read_first(now);
     for (size_t i = 0; i < rows; ++i) {

@@ -21,10 +21,13 @@ void add_if_closer(std::vector<Substitute>& list, const Substitute& other) {
 
 std::vector<Substitute> substitutes_of(Rivals& rivals, size_t member, const Candidate& present,
                                        const std::vector<Proposal>& exchanges, double nothing) {
+  // What promises to take over less of what the member explains explains nothing of it.
+  constexpr double least_taken_over = 0.1;
+  const double most_promised = std::max(rivals.reach() + error_of_promise, (1 - least_taken_over) * nothing);
   std::vector<Substitute> list;
   for (const Proposal& proposal : exchanges) {
     const bool is_one_for_one = proposal.removed == std::vector<size_t>{member} && proposal.added.size() == 1;
-    if (!is_one_for_one || list.size() >= 3) continue;
+    if (!is_one_for_one || list.size() >= 3 || -proposal.gain > most_promised) continue;
     const auto loss = rivals.loss_of(proposal);
     const Candidate& other = *proposal.added.front().candidate;
     // The effect itself from another start may become the better rival, but is no other effect.

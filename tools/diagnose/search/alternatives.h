@@ -26,6 +26,9 @@ void add_laws(const std::vector<OtherSet>& laws, std::vector<OtherSet>& sets);
 
 void add_if_new(std::vector<Substitute>& list, const Candidate* candidate);
 
+/// [-2 ln L] Far from its operating point the loss that a linearization promises may be wrong by so much.
+inline constexpr double error_of_promise = 100;
+
 /// Alternatives: every other candidate in place of a member, with its shape and all parameters fitted. One
 /// that several proposals begin with counts once. `nothing`: what the criterion loses with nothing in its
 /// place; an alternative explains something.

@@ -224,9 +224,8 @@ double inclusion_of(const Weight& weight, const std::vector<Substitute>& substit
   return most_certain / (1 + others);
 }
 
-/// [-2 ln L] Far from its operating point the loss that a linearization promises may be wrong by so much; for
-/// two shapes at a time, by less.
-constexpr double error_of_promise = 100, error_of_promise_for_two = 30;
+/// [-2 ln L] Of two shapes at a time, see error_of_promise.
+constexpr double error_of_promise_for_two = 30;
 
 /// Computes the alternatives, and from them the probability of each member.
 void ask_rivals(const Trials& trials, Conclusion& result, Evidence& evidence,

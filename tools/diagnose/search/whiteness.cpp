@@ -11,11 +11,24 @@
 namespace loopwright::diagnosis {
 namespace {
 
-/// A normal random number; the same for the same row and source of noise.
-double normal(size_t record, size_t source, size_t row) {
+/// Normal random numbers; the same for the same row and source of noise.
+std::vector<double> normal_numbers(size_t record, size_t source, size_t rows) {
   constexpr size_t most_sources = 64;
-  const UniformPair u = uniform_pair(1, record * most_sources + source, row);
-  return std::sqrt(-2 * std::log(u.first)) * std::cos(2 * std::numbers::pi * u.second);
+  std::vector<double> numbers(rows);
+  for (size_t row = 0; row < rows; ++row) {
+    const UniformPair u = uniform_pair(1, record * most_sources + source, row);
+    numbers[row] = std::sqrt(-2 * std::log(u.first)) * std::cos(2 * std::numbers::pi * u.second);
+  }
+  return numbers;
+}
+
+/// Of every source: each port, the noise force, and the slow one. Of the first port for each reading, of
+/// which a row may hold several.
+std::vector<std::vector<double>> noise_of(size_t record, size_t ports, size_t rows, size_t readings) {
+  std::vector<std::vector<double>> sources;
+  for (size_t source = 0; source < ports + 2; ++source)
+    sources.push_back(normal_numbers(record, source, source == 0 ? rows * readings : rows));
+  return sources;
 }
 
 /// The measured quantity as all rows of the record tell it, of the first port: the prediction, corrected by
@@ -57,7 +70,7 @@ Fitted with_calmer_force(const Fitted& fitted, const Noise& noise, double factor
 /// sensor. `dithers`: the noise comes before the counting, and covers its pattern. Of a row that stands for
 /// several, each reading is counted: slow motion has them all in one count.
 std::vector<double> errors_of_counting(const std::vector<double>& motion, const AxisRecord& axis,
-                                       double noise, bool dithers, size_t record) {
+                                       double noise, bool dithers, const std::vector<double>& random) {
   const size_t readings = axis.rows_in_one;
   const double count_of_mean = axis.measured.front().resolution, of_one = std::sqrt(double(readings)),
                count = of_one * count_of_mean,
@@ -71,7 +84,7 @@ std::vector<double> errors_of_counting(const std::vector<double>& motion, const 
   for (size_t k = 0; k < error.size(); ++k) {
     for (size_t i = 0; i < readings; ++i) {
       const double at = motion_at(k, (double(i) + 0.5) / double(readings) - 0.5),
-                   shaken = other * normal(record, 0, k * readings + i), seen = at + (dithers ? shaken : 0.0);
+                   shaken = other * random[k * readings + i], seen = at + (dithers ? shaken : 0.0);
       error[k] += std::round(seen / count) * count - at + (dithers ? 0.0 : shaken);
     }
     error[k] /= double(readings);
@@ -80,9 +93,10 @@ std::vector<double> errors_of_counting(const std::vector<double>& motion, const 
 }
 
 /// The whitened errors of the predictor for these errors of the first port and for white noise of all other
-/// kinds. `scale`: of the noise forces.
+/// kinds. `scale`: of the noise forces; `random`: see noise_of().
 std::vector<double> filtered(const Fitted& fitted, const Noise& noise, double scale,
-                             const std::vector<double>& first_port, size_t record) {
+                             const std::vector<double>& first_port,
+                             const std::vector<std::vector<double>>& random) {
   const ErrorSystem system(fitted, false);
   const size_t ports = size_t(system.C.rows());
   std::vector<double> white(first_port.size() * ports);
@@ -100,31 +114,38 @@ std::vector<double> filtered(const Fitted& fitted, const Noise& noise, double sc
       e.noalias() = now.C * x;
       e[0] += first_port[k];
       for (size_t port = 1; port < ports; ++port)
-        e[Eigen::Index(port)] += noise.measurement[port] * normal(record, port, k);
+        e[Eigen::Index(port)] += noise.measurement[port] * random[port][k];
       Eigen::Map<Port>(&white[k * ports], p).noalias() = now.whiten * e;
       x.noalias() -= now.correct * e;
       if (fitted.prediction.path.forgets(k)) x[slow] = 0;
       next.noalias() = now.onward * x;
-      x = next + push * normal(record, ports, k);
-      x[slow] += scale * noise.step * normal(record, ports + 1, k);
+      x = next + push * random[ports][k];
+      x[slow] += scale * noise.step * random[ports + 1][k];
     }
   });
   return white;
 }
 
 /// Of one record, see errors_of_counts().
-std::vector<double> errors_of_counts_along(const Trials& trials, const Estimate& estimate, size_t record,
-                                           double calm, bool dithers) {
+std::vector<double> smoothed_with(const Trials& trials, const Estimate& estimate, size_t record,
+                                  double calm) {
   const AxisModel& model = *trials.list[record].model;
+  const Fitted& fitted = (*estimate.fitted)[record];
   const MeasuredPort& sensor = model.record().measured.front();
+  if (!(calm < 1)) return smoothed(fitted, sensor, trials.ports());
+  return smoothed(with_calmer_force(fitted, estimate.noise, calm, model.nominal_inertia()), sensor,
+                  trials.ports());
+}
+
+std::vector<double> errors_of_counts_along(const Trials& trials, const Estimate& estimate, size_t record,
+                                           const std::vector<double>& motion, bool dithers,
+                                           const std::vector<std::vector<double>>& random) {
+  const AxisModel& model = *trials.list[record].model;
   const Fitted& fitted = (*estimate.fitted)[record];
   const Noise& noise = estimate.noise;
-  const std::vector<double> motion =
-      calm < 1
-          ? smoothed(with_calmer_force(fitted, noise, calm, model.nominal_inertia()), sensor, trials.ports())
-          : smoothed(fitted, sensor, trials.ports());
   return filtered(fitted, noise, fitted.axis.inertia / model.nominal_inertia(),
-                  errors_of_counting(motion, model.record(), noise.measurement[0], dithers, record), record);
+                  errors_of_counting(motion, model.record(), noise.measurement[0], dithers, random[0]),
+                  random);
 }
 
 std::vector<Fitted> feigned(const WhitenedErrors& errors) {
@@ -139,8 +160,14 @@ LaggedProducts lagged_products(const Trials& trials, const std::vector<Fitted>& 
                                size_t together) {
   const size_t lags = criteria::portmanteau_lags;
   LaggedProducts products{std::vector<double>(lags + 1)};
-  std::vector<double> pairs(lags + 1), error;
-  std::vector<char> counts;
+  std::vector<double> pairs(lags + 1), error, counts;  // both zero where a row does not count
+  const auto add_products = [lags](const std::vector<double>& of, std::vector<double>& sum) {
+    const auto values = Eigen::VectorXd::Map(of.data(), Eigen::Index(of.size()));
+    for (size_t lag = 0; lag <= lags && lag < of.size(); ++lag) {
+      const Eigen::Index both = values.size() - Eigen::Index(lag);
+      sum[lag] += values.tail(both).dot(values.head(both));
+    }
+  };
   for (size_t t = 0; t < trials.list.size(); ++t) {
     const Trial& trial = trials.list[t];
     error.clear(), counts.clear();
@@ -149,15 +176,11 @@ LaggedProducts lagged_products(const Trials& trials, const std::vector<Fitted>& 
       bool all = true;
       for (size_t i = k; i < k + together; ++i)
         sum += fitted[t].white[i * trials.ports() + port], all &= trial.usable[i] != 0;
-      error.push_back(sum), counts.push_back(all);
+      error.push_back(all ? sum : 0), counts.push_back(all ? 1 : 0);
     }
-    for (size_t k = 0; k < error.size(); ++k) {
-      if (!counts[k]) continue;
-      products.rows += 1;
-      for (size_t lag = 0; lag <= std::min(lags, k); ++lag)
-        if (counts[k - lag]) products.sum[lag] += error[k] * error[k - lag], pairs[lag] += 1;
-    }
+    add_products(error, products.sum), add_products(counts, pairs);
   }
+  products.rows = pairs[0];
   for (size_t lag = 1; lag <= lags; ++lag)
     if (pairs[lag] > 0) products.sum[lag] *= std::sqrt(products.rows / pairs[lag]);
   return products;
@@ -204,14 +227,22 @@ WhitenedErrors errors_of_counts(const Trials& trials, const Estimate& estimate) 
   WhitenedErrors most;
   for (const Trial& trial : trials.list)
     if (!(trial.model->record().measured.front().resolution > 0) || trials.has_map()) return {};
-  for (const double calm : {1.0, criteria::calmer_force})
+  std::vector<std::vector<std::vector<double>>> random;
+  for (size_t t = 0; t < trials.list.size(); ++t)
+    random.push_back(noise_of(t, trials.ports(), (*estimate.fitted)[t].prediction.path.samples(),
+                              trials.list[t].model->record().rows_in_one));
+  for (const double calm : {1.0, criteria::calmer_force}) {
+    std::vector<std::vector<double>> motion;
+    for (size_t t = 0; t < trials.list.size(); ++t)
+      motion.push_back(smoothed_with(trials, estimate, t, calm));
     for (const bool dithers : {true, false}) {
       WhitenedErrors errors;
       for (size_t t = 0; t < trials.list.size(); ++t)
-        errors.push_back(errors_of_counts_along(trials, estimate, t, calm, dithers));
+        errors.push_back(errors_of_counts_along(trials, estimate, t, motion[t], dithers, random[t]));
       if (most.empty() || portmanteau_of_counts(trials, errors) > portmanteau_of_counts(trials, most))
         most = std::move(errors);
     }
+  }
   return most;
 }
 
