@@ -4,12 +4,14 @@
 #include <cmath>
 #include <optional>
 #include "tools/diagnose/search/doubt.h"
+#include "tools/diagnose/search/drifting_position.h"
 #include "tools/diagnose/search/flights.h"
 #include "tools/diagnose/search/gaps.h"
 #include "tools/diagnose/search/law_swaps.h"
 #include "tools/diagnose/search/laws_of_one_variable.h"
 #include "tools/diagnose/search/noisy_input.h"
 #include "tools/diagnose/search/one_direction.h"
+#include "tools/diagnose/search/prune.h"
 #include "tools/diagnose/search/remaining_force.h"
 #include "tools/diagnose/search/rivals.h"
 #include "tools/diagnose/search/shape_swaps.h"
@@ -111,7 +113,8 @@ std::vector<double> sizes_of_members(const Trials& trials, const Conclusion& res
   std::vector<double> sizes;
   for (size_t m = 0; m < result.weights.size(); ++m)
     sizes.push_back(spoils_balance(trials, result.estimate, m, result.weights[m]) ||
-                            is_feigned_by_noise(trials, result.estimate.members, m)
+                            is_feigned_by_noise(trials, result.estimate.members, m) ||
+                            is_feigned_by_drift(trials, result.estimate.members, result.estimate.noise, m)
                         ? 0
                         : material(trials, result.estimate, result.weights[m]));
   return sizes;
@@ -153,7 +156,9 @@ void keep_material(Trials& trials, Conclusion& result, size_t catalogue) {
       maximise(trials, without);
       const double doubt =
           is_late_member(estimate.members[weakest]) ? unexplained_beside_counts(trials, estimate) : 0;
-      if (criterion(trials, without, catalogue) > criterion(trials, estimate, catalogue) + doubt) return;
+      if (criterion(trials, without, catalogue) >
+          criterion(trials, estimate, catalogue) + std::max(doubt, least_gain))
+        return;
     }
     const Weight& weight = result.weights[weakest];
     result.trail.push_back(
@@ -361,6 +366,8 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
     const auto doubt = [&](const Estimate& rival) { return unexplained_beside_counts(trials, rival); };
     if (rounds > 0 && (instead = rivals.better(doubt)))
       result.trail.push_back("with noise of its own another set does better");
+    else if ((instead = without_needless(trials, result.estimate, result.weights)))
+      result.trail.push_back("with the noise known, a member is not worth its parameters");
   }
   if (instead) {
     Conclusion next = concluded(trials, candidates, shapes, std::move(*instead), rounds - 1, refused);

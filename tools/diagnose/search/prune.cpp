@@ -1,12 +1,15 @@
 #include "tools/diagnose/search/prune.h"
 #include <algorithm>
-#include "tools/diagnose/search/weight.h"
 
 namespace loopwright::diagnosis {
+namespace {
+
+constexpr int iterations = 4;
+
+}  // namespace
 
 Estimate pruned(Trials& trials, Estimate estimate, const Noise& noise, size_t catalogue) {
   constexpr double worth_a_fit = -10;  // [criterion] gain of a removal, as linearized, that is tried
-  constexpr int iterations = 4;
   while (estimate.is_valid && estimate.members.size() > 1) {
     const Evidence evidence(trials, estimate, {}, catalogue);
     const std::vector<double> gains = evidence.gains_of_removal(double(fitted_numbers(trials)));
@@ -19,6 +22,14 @@ Estimate pruned(Trials& trials, Estimate estimate, const Noise& noise, size_t ca
     estimate = std::move(without);
   }
   return estimate;
+}
+
+std::optional<Estimate> without_needless(Trials& trials, const Estimate& estimate,
+                                         const std::vector<Weight>& weights) {
+  const auto least = std::ranges::min_element(weights, {}, &Weight::loss);
+  if (least == weights.end() || least->loss >= 0) return {};
+  return fit_members(trials, without_one(estimate.members, size_t(least - weights.begin())), estimate.noise,
+                     estimate.motion, iterations);
 }
 
 }  // namespace loopwright::diagnosis
