@@ -160,19 +160,10 @@ class Stepper {
     run_.states()[size_t(machine_.position - first)] = position;
     run_.states()[size_t(machine_.velocity - first)] = velocity;
   }
-  /// The same along a motion: what hangs on the axis, as a load on a spring, is moved as much, so that
-  /// nothing is strained by it.
+  /// The same with all that hangs on the axis.
   void restart(double position, double velocity) {
-    const double along[] = {position - this->position(), velocity - this->velocity()};
-    const Plan& plan = *machine_.plan;
-    const std::optional<Unit> units[] = {plan.unit_of(machine_.position), plan.unit_of(machine_.velocity)};
-    for (const Plan::Block& block : plan.blocks) {
-      if (block.states < 2) continue;  // of a body, position and velocity; a bristle has a deflection alone
-      for (int i = block.first_state; i < block.first_state + block.states; ++i)
-        for (const int kind : {0, 1})
-          if (units[kind] && plan.unit_of(plan.signals + i) == units[kind])
-            run_.states()[size_t(i)] += along[kind];
-    }
+    carry_along(*machine_.plan, machine_.position, machine_.velocity, position - this->position(),
+                velocity - this->velocity(), run_.states().data());
     set(position, velocity);
   }
   double position() const { return run_.number(machine_.position); }
@@ -231,6 +222,21 @@ void switch_off_noise(Run<double>& run, const Plan& plan) {
     if (double* level =
             block.type->info.type == "Noise" ? run.parameter(block.path + ".standard_deviation") : nullptr)
       *level = 0;
+}
+
+void carry_along(const Plan& plan, Number position, Number velocity, double by_position, double by_velocity,
+                 double* states) {
+  const auto unit_of = [&](Number n) { return is_state(plan, n) ? plan.unit_of(n) : std::nullopt; };
+  const std::optional<Unit> units[] = {unit_of(position), unit_of(velocity)};
+  for (const Plan::Block& block : plan.blocks) {
+    if (block.states < 2) continue;  // of a body, position and velocity; a bristle has a deflection alone
+    for (int i = block.first_state; i < block.first_state + block.states; ++i)
+      for (const int kind : {0, 1}) {
+        const Number number = plan.signals + i;
+        if (!units[kind] || number == position || number == velocity) continue;
+        if (plan.unit_of(number) == units[kind]) states[i] += kind == 0 ? by_position : by_velocity;
+      }
+  }
 }
 
 Number state_behind(const Plan& plan, Number number) {
@@ -378,8 +384,7 @@ std::vector<double> simulate_position(const Machine& machine, size_t horizon) {
   Stepper stepper(machine);
   std::vector<double> position;
   for (size_t k = 0; k < m.rows(); ++k) {
-    if (begins_anew(m, k) || (horizon > 0 && k % horizon == 0))
-      stepper.restart(m.position[k], m.velocity[k]);
+    if (begins_anew(m, k) || (horizon > 0 && k % horizon == 0)) stepper.restart(m.position[k], m.velocity[k]);
     position.push_back(stepper.position());
     if (!stepper.step()) break;
   }

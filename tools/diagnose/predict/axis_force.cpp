@@ -124,6 +124,7 @@ void AxisModel::let_inner_states_rest(double position, double velocity, double i
 }
 
 double AxisModel::net_force_at_rest(double position, double velocity, double input, double force) {
+  move_to(position, velocity);
   if (!inner_states_.empty())
     let_inner_states_rest(position, velocity, input);
   else if (input_is_filtered_)

@@ -260,7 +260,13 @@ bool AxisModel::set_noise_enters_at_input(bool enters) {
 void AxisModel::start(std::optional<double> position, double velocity) {
   if (is_affine_ && !affine_) affine_ = affine_sample();
   run_->reset({plan_->seed, 0});
-  place(position.value_or(this->position()), velocity);
+  move_to(position.value_or(this->position()), velocity);
+}
+
+void AxisModel::move_to(double position, double velocity) {
+  carry_along(*plan_, position_, velocity_, position - this->position(), velocity - this->velocity(),
+              numbers_ + plan_->signals);
+  place(position, velocity);
 }
 
 void AxisModel::place(double position, double velocity) {

@@ -101,7 +101,8 @@ class AxisModel {
   /// White noise acts as the input does, instead of on the role force; returns whether that differs.
   bool set_noise_enters_at_input(bool enters);
 
-  /// Back to the start: velocity and, if given, position; everything else at the diagram's initial values.
+  /// Back to the start: velocity and, if given, position, with what hangs on the axis; everything else at the
+  /// diagram's initial values.
   void start(std::optional<double> position, double velocity);
   /// Advances by a sample, or `duration` sample times, with held input and held force (added to the force
   /// role; pushes forward). A sample of an affine diagram is a sum of products, see AffineSample.
@@ -121,8 +122,10 @@ class AxisModel {
   void shift_position(double by);
   /// The mean force on the moving part at the present state, including the added force.
   double net_force(double input, double force);
+  /// The axis alone, or with what hangs on it.
   void place(double position, double velocity);
-  /// The same along a path, position by position: dry friction remembers the direction of approach. Lags and
+  void move_to(double position, double velocity);
+  /// The same force along a path, position by position: dry friction remembers the direction of approach. Lags and
   /// filters between input and force are in steady state.
   double net_force_at_rest(double position, double velocity, double input, double force);
   /// At the instant of a row the input changes: the net force after it, or the mean of before and after.

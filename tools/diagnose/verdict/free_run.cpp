@@ -7,6 +7,7 @@
 #include "engine/json/json.h"
 #include "engine/run/run.h"
 #include "models/real/whole.h"
+#include "tools/compare/machine.h"
 #include "tools/diagnose/criteria.h"
 #include "tools/experiment/experiment_ports.h"
 #include "tools/experiment/sensor_gains.h"
@@ -67,6 +68,12 @@ class FreeAxis {
     std::ranges::copy(kept_, run_->arena().begin());
     run_->restored(kept_at_);
   }
+  /// With what hangs on the axis.
+  void begin_at(double position, double velocity) {
+    carry_along(*plan_, moving_[0], moving_[1], position - number(moving_[0]), velocity - number(moving_[1]),
+                numbers_ + plan_->signals);
+    place(position, velocity);
+  }
   void place(double position, double velocity) {
     if (moving_[0] >= plan_->signals) numbers_[moving_[0]] = position;
     if (moving_[1] >= plan_->signals) numbers_[moving_[1]] = velocity;
@@ -84,6 +91,8 @@ class FreeAxis {
   }
 
  private:
+  double number(Number n) const { return n < 0 ? 0 : numbers_[n]; }
+
   const AxisRecord& record_;
   std::shared_ptr<Plan> plan_;
   double sample_ticks_ = 1;
@@ -125,6 +134,7 @@ class Windows {
     const auto follow_to = [&](size_t end) {
       for (; k < end; ++k) axis_.place(motion_.position[k], motion_.velocity[k]), axis_.step(k);
     };
+    axis_.begin_at(motion_.position[0], motion_.velocity[0]);
     follow_to(has_hold_out ? trial_.held_out_from : std::min(length, record_.rows()));
     while (k + 2 * length < record_.rows() && !result_.diverged) {
       follow_to(k + length);

@@ -79,7 +79,8 @@ bool is_noise_inflated(const Trials& trials, const std::vector<Member>& members,
 
 /// Between the readings of a slower sensor several names can share one law: dry friction and drags that
 /// cancel. Where noise_floor() of compare says nothing of that, the noise that was estimated does. Nor does
-/// it beside impacts, where a load that is not held as the catalogue has it leaves forces between them. A
+/// it beside impacts, where a load that is not held as the catalogue has it leaves forces between them, or of
+/// a load of the diagram that swings, with more than what drives the axis. A
 /// record with few rows between its turns is not asked otherwise, because its smoothed motion is not that of
 /// the axis.
 std::string force_far_above_noise(const Trials& trials, const std::vector<Member>& members,
@@ -88,8 +89,9 @@ std::string force_far_above_noise(const Trials& trials, const std::vector<Member
   const double left = diagnosis.steps.back().force_rmse, floor = diagnosis.noise_floor;
   const auto is_read_too_seldom = [](const Trial& t) { return t.model->record().acts_between_readings; };
   const bool has_impacts = may_be_doubtful(members);
-  const bool is_asked = has_impacts || (std::ranges::any_of(trials.list, is_read_too_seldom) &&
-                                        std::ranges::none_of(members, is_own_load));
+  const bool is_asked =
+      has_impacts || left > trials.force_rms ||
+      (std::ranges::any_of(trials.list, is_read_too_seldom) && std::ranges::none_of(members, is_own_load));
   const double most = has_impacts ? criteria::far_over_noise_beside_impacts : criteria::far_over_noise;
   const double excess = std::sqrt(std::max(0.0, left * left - floor * floor));
   if (!is_asked || left <= most * floor || excess <= criteria::least_excess * trials.force_rms) return {};
