@@ -212,6 +212,8 @@ bool spoils_balance(const Trials& trials, const Estimate& estimate, size_t membe
   if (is_loud && candidate.acts == Acts::force &&
       weight.force_rms < criteria::noise_that_drives * residual_floor(trials, estimate))
     return false;
+  if (is_loud && candidate.acts == Acts::input && weight.force_rms < residual_of_sensor(trials, estimate))
+    return false;
   const ForceShare share =
       share_of_force(trials, *trials.inverse, estimate.members, without_one(estimate.members, member));
   const bool is_seen = share.force > criteria::least_seen_of_load * weight.force_rms;
@@ -248,6 +250,11 @@ double square_of_noise(const AxisModel& model, double mass, const Noise& noise) 
 }
 
 }  // namespace
+
+double residual_of_sensor(const Trials& trials, Estimate estimate) {
+  estimate.noise.white = estimate.noise.step = 0;
+  return residual_floor(trials, estimate);
+}
 
 double residual_floor(const Trials& trials, const Estimate& estimate) {
   const double added = added_inertia(estimate.members);

@@ -56,8 +56,10 @@ bool is_held_out(const Trials& trials, const std::vector<InverseDynamics>& inver
 /// then predict a part of the noise, but does not fit the motion itself. Where noise drives the motion that
 /// the force of an effect follows, as beside a resonance, the balance is as wrong: an effect that is loud in
 /// the errors, and quieter than the noise in the balance, is not asked. Nor is a load that flies: the moments
-/// of its blows are not those of the smooth motion. Nor is a load on a spring that swings faster than the
-/// balance shows. Nor does an input spoil it that the slow balance shows to be late.
+/// of its blows are not those of the smooth motion. Nor is a loud effect at the input that is smaller than
+/// what the noise of the sensor leaves in the balance: a controller answers to that noise. Nor is a load on a
+/// spring that swings faster than the balance shows. Nor does an input spoil it that the slow balance shows
+/// to be late.
 bool spoils_balance(const Trials& trials, const Estimate& estimate, size_t member, const Weight& weight);
 
 /// Whether a member is an input that the slow part of the motion surely shows to be late. What a controller
@@ -74,5 +76,9 @@ bool is_negligible(const Trials& trials, const std::vector<Member>& members);
 
 /// The residual that the noise alone would leave, from its spectrum, and the mass with that of the members.
 double residual_floor(const Trials& trials, const Estimate& estimate);
+
+/// What the noise of the sensor alone would leave: unlike that of the force it does not repeat with the
+/// motion.
+double residual_of_sensor(const Trials& trials, Estimate estimate);
 
 }  // namespace loopwright::diagnosis

@@ -34,12 +34,6 @@ void add_variables(std::vector<std::string>& list, std::string_view joined) {
   }
 }
 
-/// What the sensor's noise alone leaves: force noise does not repeat.
-double residual_of_sensor(const Trials& trials, Estimate estimate) {
-  estimate.noise.white = estimate.noise.step = 0;
-  return residual_floor(trials, estimate);
-}
-
 /// Why the residual force is no noise, in words; empty: it may be.
 /// `repeating`: the force that coarse counts feign, which is the same in every repeat of a motion.
 std::string force_above_noise(const Trials& trials, const std::vector<InverseDynamics>& inverse,
@@ -77,12 +71,19 @@ bool is_noise_inflated(const Trials& trials, const std::vector<Member>& members,
          diagnosis.steps.back().force_rmse < criteria::least_residual_of_noise * floor;
 }
 
-/// Between the readings of a slower sensor several names can share one law: dry friction and drags that
-/// cancel. Where noise_floor() of compare says nothing of that, the noise that was estimated does. Nor does
-/// it beside impacts, where a load that is not held as the catalogue has it leaves forces between them, or of
-/// a load of the diagram that swings, with more than what drives the axis. A
-/// record with few rows between its turns is not asked otherwise, because its smoothed motion is not that of
-/// the axis.
+/// Whether the smoothed motion is that of the axis: there are many rows from turn to turn.
+bool has_long_ways(const std::vector<InverseDynamics>& inverse) {
+  constexpr double least_rows = 40;  // from a turn to the next
+  return std::ranges::all_of(inverse, [](const InverseDynamics& i) {
+    double turns = 0;
+    for (size_t k = 1; k < i.motion.rows(); ++k) turns += i.motion.velocity[k] * i.motion.velocity[k - 1] < 0;
+    return double(i.motion.rows()) >= least_rows * turns;
+  });
+}
+
+/// Where noise_floor() of compare takes what is left for noise, the noise that was estimated may say
+/// otherwise: between the readings of a slower sensor several names can share one law, as dry friction and
+/// drags that cancel; a load that is not held as the diagram or the catalogue has it swings; a reading leaps.
 std::string force_far_above_noise(const Trials& trials, const std::vector<Member>& members,
                                   const std::vector<InverseDynamics>& inverse, const Diagnosis& diagnosis) {
   if (!balances_forces(trials, inverse)) return {};
@@ -90,12 +91,23 @@ std::string force_far_above_noise(const Trials& trials, const std::vector<Member
   const auto is_read_too_seldom = [](const Trial& t) { return t.model->record().acts_between_readings; };
   const bool has_impacts = may_be_doubtful(members);
   const bool is_asked =
-      has_impacts || left > trials.force_rms ||
+      has_impacts || has_long_ways(inverse) ||
       (std::ranges::any_of(trials.list, is_read_too_seldom) && std::ranges::none_of(members, is_own_load));
   const double most = has_impacts ? criteria::far_over_noise_beside_impacts : criteria::far_over_noise;
   const double excess = std::sqrt(std::max(0.0, left * left - floor * floor));
   if (!is_asked || left <= most * floor || excess <= criteria::least_excess * trials.force_rms) return {};
   return fmt::format("the residual force is {:.1f} times what the estimated noise leaves", left / floor);
+}
+
+/// A gain and a damping state the law of another inertia.
+std::string why_inertia_is_open(const Diagnosis& diagnosis) {
+  const auto lists_inertia = [](const NotLookedFor& list) {
+    return std::ranges::find(list.effects, "inertia") != list.effects.end();
+  };
+  const bool is_open =
+      std::ranges::any_of(diagnosis.not_looked_for, lists_inertia) &&
+      std::ranges::find(diagnosis.effects, "force_gain", &DiagnosedEffect::name) != diagnosis.effects.end();
+  return is_open ? "what is called force_gain may be another inertia, which could not be looked for" : "";
 }
 
 /// What makes up for a missing effect in the fitted rows need not do so in others.
@@ -174,7 +186,8 @@ void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, c
   if (!std::isfinite(diagnosis.mean_square))
     diagnosis.contradictions.push_back("the errors of the predictions could not be judged");
   for (std::string why : {why_input_is_taken_away(trials, e), why_effects_cancel(diagnosis),
-                          lost_in_noise(trials, e, diagnosis)})
+                          lost_in_noise(trials, e, diagnosis),
+                          trials.has_map() ? std::string() : why_inertia_is_open(diagnosis)})
     if (!why.empty()) diagnosis.contradictions.push_back(std::move(why));
   for (const DiagnosedEffect& effect : diagnosis.effects)
     if (std::string why = why_not_determined(effect, longest_record_s(trials)); !why.empty())
