@@ -44,18 +44,6 @@ int speeds_in(const MeasuredMotion& m) {
   return count;
 }
 
-int reversals_in(const MeasuredMotion& m) {
-  int count = 0;
-  double direction = 0;
-  for (size_t k = 0; k < m.rows(); ++k) {
-    if (std::abs(m.velocity[k]) <= m.rest_speed) continue;
-    const double now = m.velocity[k] > 0 ? 1 : -1;
-    count += direction != 0 && now != direction;
-    direction = now;
-  }
-  return count;
-}
-
 /// Spread of the force at the same position and direction, relative to its overall spread.
 bool has_varied_force(const MeasuredMotion& m) {
   constexpr int bins = 50;
@@ -166,6 +154,18 @@ void check_input(const MeasuredMotion& m, const ForceResidual& residual, std::ve
 }
 
 }  // namespace
+
+int reversals_in(const MeasuredMotion& m) {
+  int count = 0;
+  double direction = 0;
+  for (size_t k = 0; k < m.rows(); ++k) {
+    if (std::abs(m.velocity[k]) <= m.rest_speed) continue;
+    const double now = m.velocity[k] > 0 ? 1 : -1;
+    count += direction != 0 && now != direction;
+    direction = now;
+  }
+  return count;
+}
 
 RecordContent content_of(const Machine& machine, const ForceResidual& residual, double resolution) {
   const MeasuredMotion& m = machine.motion;

@@ -25,6 +25,9 @@ struct Identifiability {
 };
 std::vector<Identifiability> identifiable(const RecordContent& content, const std::vector<Effect>& catalogue);
 
+/// How often the axis moves the other way than before; flickering at rest does not count.
+int reversals_in(const MeasuredMotion& motion);
+
 /// A fault of the record, with its consequence.
 struct RecordFault {
   std::string name;  ///< too_short, one_direction, one_speed, unsynchronised, wrong_sign, wrong_unit, gaps,

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include "tools/compare/excitation.h"
 #include "tools/compare/missing_force.h"
 #include "tools/diagnose/search/rest.h"
 #include "tools/diagnose/criteria.h"
@@ -75,9 +76,7 @@ bool is_noise_inflated(const Trials& trials, const std::vector<Member>& members,
 bool has_long_ways(const std::vector<InverseDynamics>& inverse) {
   constexpr double least_rows = 40;  // from a turn to the next
   return std::ranges::all_of(inverse, [](const InverseDynamics& i) {
-    double turns = 0;
-    for (size_t k = 1; k < i.motion.rows(); ++k) turns += i.motion.velocity[k] * i.motion.velocity[k - 1] < 0;
-    return double(i.motion.rows()) >= least_rows * turns;
+    return double(i.motion.rows()) >= least_rows * double(reversals_in(i.motion));
   });
 }
 
