@@ -138,6 +138,11 @@ void analyse_force(Comparison& comparison, const std::string& diagram, const Exp
     comparison.why_no_force = "the role \"force\" is not what accelerates the machine in the model";
     return;
   }
+  if (std::ranges::none_of(machine->motion.counts, [](auto counts) { return bool(counts); })) {
+    comparison.why_no_force =
+        "no row counts: the axis is always near a rest, or rows are missing in the neighbourhood of each";
+    return;
+  }
   ForceAnalysis analysis;
   analysis.mass = machine->mass;
   analysis.residual = force_residual(*machine, acceleration);

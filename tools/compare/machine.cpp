@@ -315,6 +315,10 @@ std::optional<Machine> find_machine(const std::string& diagram, const Experiment
     why = "the roles \"position\" and \"velocity\" lead to no states of the model, such as those of a Mass";
     return {};
   }
+  if (machine.position == machine.velocity) {
+    why = "the roles \"position\" and \"velocity\" lead to one state of the model";
+    return {};
+  }
   machine.sensor = x[0];
   if (const std::string* force = port_of(experiment, "force"))
     if (const auto number = machine.plan->find(*force); number.size() == 1) {

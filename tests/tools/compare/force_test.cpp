@@ -168,6 +168,14 @@ TEST(ForceResidual, LostRowsShiftNothing) {
   }
 }
 
+TEST(ForceResidual, WhereNoRowCountsIsNotZero) {
+  Record record;
+  for (int k = 5; k < 12'000; k += 8) record.lost.push_back(k);
+  const Comparison c = record.compared();
+  EXPECT_FALSE(c.force);
+  EXPECT_THAT(c.why_no_force, testing::HasSubstr("no row counts"));
+}
+
 TEST(RecordFaults, AreNamed) {
   Record one_way;
   one_way.offset_per_second = 1;

@@ -132,6 +132,12 @@ AxisModel::AxisModel(const std::string& path, const std::string& experiment_path
     return number < 0 ? number : state_behind(*changed, number);
   };
   position_ = moving("position"), velocity_ = moving("velocity");
+  if (position_ >= 0 && position_ == velocity_) {
+    auto& p = problems.error(role(cut, "velocity").second, "/roles/velocity", "",
+                             "the roles \"position\" and \"velocity\" lead to one state");
+    p.expected = "the port of the axis' velocity";
+    throw InputError(std::move(problems));
+  }
   for (MeasuredPort& port : record_.measured) {  // counters and samplers have no slope for a correction
     const Number behind = port.role == "position" ? position_ : velocity_;
     if (behind >= 0 && is_sampled_between(*changed, behind, port.number)) port.number = behind;
