@@ -125,8 +125,8 @@ class AxisModel {
   /// The axis alone, or with what hangs on it.
   void place(double position, double velocity);
   void move_to(double position, double velocity);
-  /// The same force along a path, position by position: dry friction remembers the direction of approach. Lags and
-  /// filters between input and force are in steady state.
+  /// The same force along a path, position by position: dry friction remembers the direction of approach.
+  /// Lags and filters between input and force are in steady state.
   double net_force_at_rest(double position, double velocity, double input, double force);
   /// At the instant of a row the input changes: the net force after it, or the mean of before and after.
   enum class At { from_there_on, mean };
