@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include "tools/compare/joined_bodies.h"
 #include "tools/experiment/even_grid.h"
 #include "models/real/whole.h"
 
@@ -112,10 +113,6 @@ std::shared_ptr<const Plan> driven_plan(const std::string& diagram, const Experi
   return nullptr;
 }
 
-bool is_state(const Plan& plan, Number number) {
-  return number >= plan.signals && number < plan.signals + plan.states;
-}
-
 /// The unit in the driven plan, else in the original diagram: there the source of the input may determine it.
 std::optional<Unit> unit_of_port(const std::string& port, const Plan& driven, const std::string& diagram,
                                  const LoadOptions& options) {
@@ -222,21 +219,6 @@ void switch_off_noise(Run<double>& run, const Plan& plan) {
     if (double* level =
             block.type->info.type == "Noise" ? run.parameter(block.path + ".standard_deviation") : nullptr)
       *level = 0;
-}
-
-void carry_along(const Plan& plan, Number position, Number velocity, double by_position, double by_velocity,
-                 double* states) {
-  const auto unit_of = [&](Number n) { return is_state(plan, n) ? plan.unit_of(n) : std::nullopt; };
-  const std::optional<Unit> units[] = {unit_of(position), unit_of(velocity)};
-  for (const Plan::Block& block : plan.blocks) {
-    if (block.states < 2) continue;  // of a body, position and velocity; a bristle has a deflection alone
-    for (int i = block.first_state; i < block.first_state + block.states; ++i)
-      for (const int kind : {0, 1}) {
-        const Number number = plan.signals + i;
-        if (!units[kind] || number == position || number == velocity) continue;
-        if (plan.unit_of(number) == units[kind]) states[i] += kind == 0 ? by_position : by_velocity;
-      }
-  }
 }
 
 Number state_behind(const Plan& plan, Number number) {
@@ -363,8 +345,12 @@ std::vector<double> model_acceleration(Machine& machine) {
   std::vector<double> acceleration, driven_force, other_force;
   double force_by_acceleration = 0, squared_acceleration = 0;
   for (size_t k = 0; k < m.rows(); ++k) {
-    for (Stepper* run : {&stepper, &undriven})
-      begins_anew(m, k) ? run->restart(m.position[k], m.velocity[k]) : run->set(m.position[k], m.velocity[k]);
+    for (Stepper* run : {&stepper, &undriven}) {
+      if (begins_anew(m, k))
+        run->restart(m.position[k], m.velocity[k]);
+      else
+        run->set(m.position[k], m.velocity[k]);
+    }
     const double before = stepper.evaluate();
     driven_force.push_back(before), other_force.push_back(undriven.evaluate());
     if (!stepper.step() || !undriven.step()) break;

@@ -28,12 +28,6 @@ void switch_off_noise(Run<double>& run, const Plan& plan);
 /// following the signal path backward to a state of the same unit. -1: none.
 Number state_behind(const Plan& plan, Number number);
 
-/// Moves what hangs on the axis, as a load on a spring, by as much as its position and its velocity are moved,
-/// so that nothing is strained by it: the states of bodies that have their units. The axis' own are not
-/// touched.
-void carry_along(const Plan& plan, Number position, Number velocity, double by_position, double by_velocity,
-                 double* states);
-
 /// Whether a block between a state and its sensor is sampled, as an Encoder.
 bool is_sampled_between(const Plan& plan, Number state, Number sensor);
 

@@ -6,9 +6,10 @@ namespace loopwright {
 namespace {
 
 /// What is remembered fades with the way: at first a segment is led over so much of the stroke to its first
-/// row, and over so many times more where that does not suffice; at most the whole stroke. What remembers a
-/// longer way is run in turn, and so are as many sets of numbers after it: a fit moves them little by little.
-constexpr double first_way = 0.002;  // [stroke]
+/// row, and over so many times more where that does not suffice; at most about half the stroke. What
+/// remembers a longer way is run in turn, and so are as many sets of numbers after it: a fit moves them
+/// little by little.
+constexpr double first_way = 0.002, longest_way = 0.6;  // [stroke]
 constexpr double longer = 4;
 constexpr int runs_in_turn = 16;
 /// On either side, within a quarter of a segment.
@@ -105,7 +106,7 @@ bool SegmentRun::run(const RoleSignals& signals, size_t rows, const std::vector<
   if (lanes_.lanes() == 1 || signals.position.size() < rows || rows < least_rows * lanes_.lanes())
     return false;
   if (in_turn_ > 0) return --in_turn_, false;
-  for (; way_before_ <= 1; way_before_ *= longer)
+  for (; way_before_ <= longest_way; way_before_ *= longer)
     if (run_once(signals, rows, fitted, mean, slope)) return true;
   way_before_ = first_way, in_turn_ = runs_in_turn;
   return false;

@@ -6,6 +6,7 @@
 #include "engine/run/run.h"
 #include "tools/experiment/experiment_ports.h"
 #include "tools/experiment/sensor_gains.h"
+#include "tools/compare/joined_bodies.h"
 #include "tools/compare/machine.h"
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/predict/injection.h"

@@ -122,8 +122,9 @@ class AxisModel {
   void shift_position(double by);
   /// The mean force on the moving part at the present state, including the added force.
   double net_force(double input, double force);
-  /// The axis alone, or with what hangs on it.
+  /// The axis alone.
   void place(double position, double velocity);
+  /// With what hangs on it.
   void move_to(double position, double velocity);
   /// The same force along a path, position by position: dry friction remembers the direction of approach.
   /// Lags and filters between input and force are in steady state.

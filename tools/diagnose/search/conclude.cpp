@@ -366,8 +366,8 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
     const auto doubt = [&](const Estimate& rival) { return unexplained_beside_counts(trials, rival); };
     if (rounds > 0 && (instead = rivals.better(doubt)))
       result.trail.push_back("with noise of its own another set does better");
-    else if ((instead = without_needless(trials, result.estimate, result.weights)))
-      result.trail.push_back("with the noise known, a member is not worth its parameters");
+    else if ((instead = without_uncertain_delay(trials, estimate, result.weights)))
+      result.trail.push_back("with the noise known, a delay is not worth its parameter");
   }
   if (instead) {
     Conclusion next = concluded(trials, candidates, shapes, std::move(*instead), rounds - 1, refused);

@@ -24,12 +24,15 @@ Estimate pruned(Trials& trials, Estimate estimate, const Noise& noise, size_t ca
   return estimate;
 }
 
-std::optional<Estimate> without_needless(Trials& trials, const Estimate& estimate,
-                                         const std::vector<Weight>& weights) {
-  const auto least = std::ranges::min_element(weights, {}, &Weight::loss);
-  if (least == weights.end() || least->loss >= 0) return {};
-  return fit_members(trials, without_one(estimate.members, size_t(least - weights.begin())), estimate.noise,
-                     estimate.motion, iterations);
+std::optional<Estimate> without_uncertain_delay(Trials& trials, const Estimate& estimate,
+                                                const std::vector<Weight>& weights) {
+  for (size_t m = 0; m < estimate.members.size(); ++m) {
+    if (!is_late_input(*estimate.members[m].candidate) || weights[m].loss >= 0) continue;
+    Estimate without =
+        fit_members(trials, without_one(estimate.members, m), estimate.noise, estimate.motion, iterations);
+    if (without.is_valid) return without;
+  }
+  return {};
 }
 
 }  // namespace loopwright::diagnosis

@@ -9,9 +9,10 @@ namespace loopwright::diagnosis {
 /// The estimate without them, fitted with a given noise. One member stays.
 Estimate pruned(Trials& trials, Estimate estimate, const Noise& noise, size_t catalogue);
 
-/// The estimate without the member that the record asks for least, if the criterion prefers that: with the
-/// noise of the search it had asked for more.
-std::optional<Estimate> without_needless(Trials& trials, const Estimate& estimate,
-                                         const std::vector<Weight>& weights);
+/// The estimate without an input that is late, if the distance of its delay from zero, in standard
+/// deviations, is not worth its price: Weight::loss. Beside coarse counts the likelihood alone may prefer a
+/// delay that is none.
+std::optional<Estimate> without_uncertain_delay(Trials& trials, const Estimate& estimate,
+                                                const std::vector<Weight>& weights);
 
 }  // namespace loopwright::diagnosis

@@ -52,8 +52,7 @@ SearchResult Search::run() {
   bool goes_on = grow(4);
   if (!goes_on && is_much_left() && rest_is_noise()) goes_on = grow(4);
   if (goes_on && is_much_left() && trials_.has_map()) goes_on = grow(most_steps_in_a_map);
-  const bool may_lack_a_name = !is_spent() && !seems_explained(trials_, best_);
-  if (may_lack_a_name && (is_much_left() || explain_without_name())) goes_on = !start_from_what_has_no_name();
+  if (!is_spent() && (is_much_left() || explain_without_name())) goes_on = !start_from_what_has_no_name();
   if (goes_on) grow(most_effects - std::min(most_effects, best_.members.size()));
   if (auto function = function_of_velocity(trials_, best_, unknown_, candidates_.size(), trail_))
     take_nameless(std::move(*function));

@@ -126,7 +126,7 @@ std::vector<double> filtered(const Fitted& fitted, const Noise& noise, double sc
   return white;
 }
 
-/// Of one record, see errors_of_counts().
+/// With noise forces that are smaller by a factor.
 std::vector<double> smoothed_with(const Trials& trials, const Estimate& estimate, size_t record,
                                   double calm) {
   const AxisModel& model = *trials.list[record].model;
@@ -137,6 +137,7 @@ std::vector<double> smoothed_with(const Trials& trials, const Estimate& estimate
                   trials.ports());
 }
 
+/// Of one record, see errors_of_counts().
 std::vector<double> errors_of_counts_along(const Trials& trials, const Estimate& estimate, size_t record,
                                            const std::vector<double>& motion, bool dithers,
                                            const std::vector<std::vector<double>>& random) {

@@ -7,6 +7,7 @@
 #include "engine/json/json.h"
 #include "engine/run/run.h"
 #include "models/real/whole.h"
+#include "tools/compare/joined_bodies.h"
 #include "tools/compare/machine.h"
 #include "tools/diagnose/criteria.h"
 #include "tools/experiment/experiment_ports.h"

@@ -72,12 +72,16 @@ bool is_noise_inflated(const Trials& trials, const std::vector<Member>& members,
          diagnosis.steps.back().force_rmse < criteria::least_residual_of_noise * floor;
 }
 
-/// Whether the smoothed motion is that of the axis: there are many rows from turn to turn.
+/// Whether the smoothed motion is that of the axis: it moves for a while from turn to turn, in which the
+/// filter of the residual sees many rows.
 bool has_long_ways(const std::vector<InverseDynamics>& inverse) {
-  constexpr double least_rows = 40;  // from a turn to the next
-  return std::ranges::all_of(inverse, [](const InverseDynamics& i) {
-    return double(i.motion.rows()) >= least_rows * double(reversals_in(i.motion));
-  });
+  constexpr double least_rows = 40, least_s = 0.05;  // in motion, from a turn to the next
+  const auto has = [&](const MeasuredMotion& m) {
+    const auto moves = [&](double v) { return std::abs(v) > m.rest_speed; };
+    const double rows = std::max(least_rows, least_s / m.sample_time);
+    return double(std::ranges::count_if(m.velocity, moves)) >= rows * double(reversals_in(m));
+  };
+  return std::ranges::all_of(inverse, has, &InverseDynamics::motion);
 }
 
 /// Where noise_floor() of compare takes what is left for noise, the noise that was estimated may say
@@ -85,20 +89,19 @@ bool has_long_ways(const std::vector<InverseDynamics>& inverse) {
 /// drags that cancel; a load that is not held as the diagram or the catalogue has it swings; a reading leaps.
 std::string force_far_above_noise(const Trials& trials, const std::vector<Member>& members,
                                   const std::vector<InverseDynamics>& inverse, const Diagnosis& diagnosis) {
-  if (!balances_forces(trials, inverse)) return {};
+  if (trials.has_map() || !balances_forces(trials, inverse)) return {};
   const double left = diagnosis.steps.back().force_rmse, floor = diagnosis.noise_floor;
   const auto is_read_too_seldom = [](const Trial& t) { return t.model->record().acts_between_readings; };
   const bool has_impacts = may_be_doubtful(members);
-  const bool is_asked =
-      has_impacts || has_long_ways(inverse) ||
-      (std::ranges::any_of(trials.list, is_read_too_seldom) && std::ranges::none_of(members, is_own_load));
+  const bool is_known = has_long_ways(inverse) || std::ranges::any_of(trials.list, is_read_too_seldom);
+  const bool is_asked = has_impacts || (is_known && std::ranges::none_of(members, is_own_load));
   const double most = has_impacts ? criteria::far_over_noise_beside_impacts : criteria::far_over_noise;
   const double excess = std::sqrt(std::max(0.0, left * left - floor * floor));
   if (!is_asked || left <= most * floor || excess <= criteria::least_excess * trials.force_rms) return {};
   return fmt::format("the residual force is {:.1f} times what the estimated noise leaves", left / floor);
 }
 
-/// A gain and a damping state the law of another inertia.
+/// A gain, mostly with a damping, states the law of another inertia.
 std::string why_inertia_is_open(const Diagnosis& diagnosis) {
   const auto lists_inertia = [](const NotLookedFor& list) {
     return std::ranges::find(list.effects, "inertia") != list.effects.end();
