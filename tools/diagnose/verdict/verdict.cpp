@@ -90,11 +90,15 @@ bool has_long_ways(const std::vector<InverseDynamics>& inverse) {
 std::string force_far_above_noise(const Trials& trials, const std::vector<Member>& members,
                                   const std::vector<InverseDynamics>& inverse, const Diagnosis& diagnosis) {
   if (trials.has_map() || !balances_forces(trials, inverse)) return {};
-  const double left = diagnosis.steps.back().force_rmse, floor = diagnosis.noise_floor;
   const auto is_read_too_seldom = [](const Trial& t) { return t.model->record().acts_between_readings; };
   const bool has_impacts = may_be_doubtful(members);
+  const double left = diagnosis.steps.back().force_rmse, floor = diagnosis.noise_floor;
   const bool is_known = has_long_ways(inverse) || std::ranges::any_of(trials.list, is_read_too_seldom);
-  const bool is_asked = has_impacts || (is_known && std::ranges::none_of(members, is_own_load));
+  // Of an error of the sensor the balance takes the acceleration, which is only nearly that of the motion.
+  const auto is_beside_balance = [](const Member& m) {
+    return is_own_load(m) || m.candidate->acts == Acts::sensor;
+  };
+  const bool is_asked = has_impacts || (is_known && std::ranges::none_of(members, is_beside_balance));
   const double most = has_impacts ? criteria::far_over_noise_beside_impacts : criteria::far_over_noise;
   const double excess = std::sqrt(std::max(0.0, left * left - floor * floor));
   if (!is_asked || left <= most * floor || excess <= criteria::least_excess * trials.force_rms) return {};
