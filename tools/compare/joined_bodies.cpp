@@ -37,10 +37,12 @@ std::vector<int> bodies_with(const Plan& plan, Number state) {
 
 }  // namespace
 
-void carry_along(const Plan& plan, Number position, Number velocity, double by_position, double by_velocity,
+void carry_along(const Plan& plan, Number position, Number velocity, double to_position, double to_velocity,
                  double* states) {
   const auto unit_of = [&](Number n) { return is_state(plan, n) ? plan.unit_of(n) : std::nullopt; };
   const std::optional<Unit> units[] = {unit_of(position), unit_of(velocity)};
+  const auto now = [&](Number n) { return is_state(plan, n) ? states[n - plan.signals] : 0.0; };
+  const double by[] = {to_position - now(position), to_velocity - now(velocity)};
   const Number of_axis = is_state(plan, position) ? position : velocity;
   if (!is_state(plan, of_axis)) return;
   for (const int body : bodies_with(plan, of_axis)) {
@@ -49,7 +51,7 @@ void carry_along(const Plan& plan, Number position, Number velocity, double by_p
       for (const int kind : {0, 1}) {
         const Number number = plan.signals + i;
         if (!units[kind] || number == position || number == velocity) continue;
-        if (plan.unit_of(number) == units[kind]) states[i] += kind == 0 ? by_position : by_velocity;
+        if (plan.unit_of(number) == units[kind]) states[i] += by[kind];
       }
   }
 }

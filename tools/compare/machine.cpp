@@ -159,8 +159,8 @@ class Stepper {
   }
   /// The same with all that hangs on the axis.
   void restart(double position, double velocity) {
-    carry_along(*machine_.plan, machine_.position, machine_.velocity, position - this->position(),
-                velocity - this->velocity(), run_.states().data());
+    carry_along(*machine_.plan, machine_.position, machine_.velocity, position, velocity,
+                run_.states().data());
     set(position, velocity);
   }
   double position() const { return run_.number(machine_.position); }

@@ -68,7 +68,8 @@ template <class Take> class InBlocks {
 
 }  // namespace
 
-EffectRun::EffectRun(std::shared_ptr<const EffectPlan> plan, int lanes) : plan_(std::move(plan)) {
+EffectRun::EffectRun(std::shared_ptr<const EffectPlan> plan, int lanes)
+    : plan_(std::move(plan)), reads_held_signals_(reads_held_signals(plan_->effect)) {
   for (const EffectParameter& p : plan_->effect.parameters)
     if (p.is_fitted) starts_.push_back(range_of(p, plan_->sizes).start);
   if (plan_->is_linear) {
@@ -127,7 +128,7 @@ void EffectRun::give_at(double u, size_t rows) {
 /// ∫ f du and 12 ∫ (u - ½) f du over the sample, by two Gauss points in each part of it. What is held has one
 /// value in all of it.
 void EffectRun::mean_of(size_t rows, double now) {
-  const bool at_start = plan_->acts_on_sensor, is_constant = reads_held_signals(plan_->effect);
+  const bool at_start = plan_->acts_on_sensor, is_constant = reads_held_signals_;
   const size_t parts = parts_of_a_sample(plan_->sizes), points = at_start || is_constant ? 1 : 2 * parts;
   const double weight = 1.0 / double(points);
   std::ranges::fill(area_, 0.0), std::ranges::fill(slope_, 0.0);

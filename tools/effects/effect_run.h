@@ -71,6 +71,7 @@ class EffectRun {
   template <class Take> void follow_modes(const RoleSignals& signals, size_t rows, size_t lanes, Take&& take);
 
   std::shared_ptr<const EffectPlan> plan_;
+  bool reads_held_signals_;                  // and nothing else
   std::vector<double> starts_;               // of each fitted parameter
   std::vector<std::vector<double>> fitted_;  // of each set
   std::unique_ptr<EffectSample> linear_;     // of a linear effect

@@ -7,8 +7,8 @@ namespace {
 
 /// What is remembered fades with the way: at first a segment is led over so much of the stroke to its first
 /// row, and over so many times more where that does not suffice; at most about half the stroke. What
-/// remembers a longer way is run in turn, and so are as many sets of numbers after it: a fit moves them
-/// little by little.
+/// remembers a longer way is run in turn, and so are some sets of numbers after it: a fit moves them little
+/// by little.
 constexpr double first_way = 0.002, longest_way = 0.6;  // [stroke]
 constexpr double longer = 4;
 constexpr int runs_in_turn = 16;

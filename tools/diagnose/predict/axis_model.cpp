@@ -271,8 +271,7 @@ void AxisModel::start(std::optional<double> position, double velocity) {
 }
 
 void AxisModel::move_to(double position, double velocity) {
-  carry_along(*plan_, position_, velocity_, position - this->position(), velocity - this->velocity(),
-              numbers_ + plan_->signals);
+  carry_along(*plan_, position_, velocity_, position, velocity, numbers_ + plan_->signals);
   place(position, velocity);
 }
 

@@ -21,7 +21,7 @@ void add_if_closer(std::vector<Substitute>& list, const Substitute& other) {
 
 std::vector<Substitute> substitutes_of(Rivals& rivals, size_t member, const Candidate& present,
                                        const std::vector<Proposal>& exchanges, double nothing) {
-  // Of those that promise less, noise of its own makes an alternative as it would of nothing in that place.
+  // What promises less could only be an alternative by louder noise, as nothing in that place could.
   constexpr double least_taken_over = 0.1;
   const double most_promised = std::max(rivals.reach() + error_of_promise, (1 - least_taken_over) * nothing);
   std::vector<Substitute> list;

@@ -163,11 +163,8 @@ LaggedProducts lagged_products(const Trials& trials, const std::vector<Fitted>& 
   LaggedProducts products{std::vector<double>(lags + 1)};
   std::vector<double> pairs(lags + 1), error, counts;  // both zero where a row does not count
   const auto add_products = [lags](const std::vector<double>& of, std::vector<double>& sum) {
-    const auto values = Eigen::VectorXd::Map(of.data(), Eigen::Index(of.size()));
-    for (size_t lag = 0; lag <= lags && lag < of.size(); ++lag) {
-      const Eigen::Index both = values.size() - Eigen::Index(lag);
-      sum[lag] += values.tail(both).dot(values.head(both));
-    }
+    const std::vector<double> more = lagged_products_of(of, lags);
+    for (size_t lag = 0; lag <= lags; ++lag) sum[lag] += more[lag];
   };
   for (size_t t = 0; t < trials.list.size(); ++t) {
     const Trial& trial = trials.list[t];

@@ -71,8 +71,7 @@ class FreeAxis {
   }
   /// With what hangs on the axis.
   void begin_at(double position, double velocity) {
-    carry_along(*plan_, moving_[0], moving_[1], position - number(moving_[0]), velocity - number(moving_[1]),
-                numbers_ + plan_->signals);
+    carry_along(*plan_, moving_[0], moving_[1], position, velocity, numbers_ + plan_->signals);
     place(position, velocity);
   }
   void place(double position, double velocity) {
@@ -92,8 +91,6 @@ class FreeAxis {
   }
 
  private:
-  double number(Number n) const { return n < 0 ? 0 : numbers_[n]; }
-
   const AxisRecord& record_;
   std::shared_ptr<Plan> plan_;
   double sample_ticks_ = 1;

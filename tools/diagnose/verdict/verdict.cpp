@@ -106,7 +106,8 @@ std::string force_far_above_noise(const Trials& trials, const std::vector<Member
 }
 
 /// A gain, mostly with a damping, states the law of another inertia.
-std::string why_inertia_is_open(const Diagnosis& diagnosis) {
+std::string why_inertia_is_open(const Trials& trials, const Diagnosis& diagnosis) {
+  if (trials.has_map()) return {};
   const auto lists_inertia = [](const NotLookedFor& list) {
     return std::ranges::find(list.effects, "inertia") != list.effects.end();
   };
@@ -192,8 +193,7 @@ void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, c
   if (!std::isfinite(diagnosis.mean_square))
     diagnosis.contradictions.push_back("the errors of the predictions could not be judged");
   for (std::string why : {why_input_is_taken_away(trials, e), why_effects_cancel(diagnosis),
-                          lost_in_noise(trials, e, diagnosis),
-                          trials.has_map() ? std::string() : why_inertia_is_open(diagnosis)})
+                          lost_in_noise(trials, e, diagnosis), why_inertia_is_open(trials, diagnosis)})
     if (!why.empty()) diagnosis.contradictions.push_back(std::move(why));
   for (const DiagnosedEffect& effect : diagnosis.effects)
     if (std::string why = why_not_determined(effect, longest_record_s(trials)); !why.empty())
