@@ -41,15 +41,15 @@ constexpr double most_rows = 120000, thinned_sample_s = 2e-3;
 constexpr double changes_of_noise = 1.6;
 /// [rows] On both sides of a change of sign, where the sign of dry friction is not certain.
 constexpr size_t rows_of_a_turn = 1;
-/// [mean square of the whitened errors] A law explains the rows after the reversals. Where an axis sticks, or
-/// its sensor is noisy, none does: hundreds.
+/// [mean square] Of rows after reversals that a law explains. Where an axis sticks, or is noisy: hundreds.
 constexpr double most_mean_square_at_reversals = 2;
 /// [rest_speed] Friction that falls within fewer of them is not seen after reversals.
 constexpr double rest_speeds_of_a_fall = 4;
 /// [criterion] Over all rows together, by which another law must do better than the present one.
 constexpr double least_gain_at_reversals = 50;
-/// [reversals] Of a record of less than two seconds that supports a verdict even with fewer than
-/// plenty_of_rows: an oscillation shows as much in a short time as other motions do in a long one.
+/// [rows that are used] Left out after reversals, and not explained: what happens there may be a law.
+constexpr double most_hidden_at_turns = 0.3;
+/// [reversals] Of a record of less than two seconds, which support a verdict even without plenty_of_rows.
 constexpr int plenty_of_reversals = 20;
 /// [gain of a late input] By which the other shape may be behind where only a velocity is measured.
 constexpr double share_of_controller = 0.15;
@@ -82,9 +82,9 @@ constexpr double usual_white_noise = 0.01, least_search_noise = 0.005, most_sear
 constexpr double loud_noise = 0.1, most_portmanteau_of_noise_seen = 120, noise_that_hides = 0.3;
 /// [white force] Slow force of an amplifier.
 constexpr double usual_slow_noise = 0.3;
-/// [white force; density of the white force at zero frequency] A slow force that exceeds both is not noise
-/// but something that the model lacks. The second counts where a sample is a large part of its memory: noise
-/// of an amplifier has about 5 at any rate.
+/// [white force of judged_row_s; density of the white force at zero frequency] A slow force that exceeds
+/// both is not noise but something that the model lacks. The second counts where a sample is a large part of
+/// its memory: noise of an amplifier has about 5 at any rate.
 constexpr double most_slow_noise = 0.8, most_slow_density = 15;
 /// [sample times] A force that is forgotten sooner is noise, however large: the ripple of an amplifier. What
 /// a model lacks lasts as long as the motion, of which a record shows more samples.

@@ -85,9 +85,15 @@ namespace {
 /// Of a slow force: spectral density at zero frequency over variance, in sample times.
 double samples_alike(const Noise& noise) { return (1 + noise.memory) / (1 - noise.memory); }
 
-bool is_slow_force_noise(const Noise& noise) {
+/// [white force of a row] That of its mean over criteria::judged_row_s: the faster the rows, the smaller.
+double white_of_judged_row(const Trials& trials) {
+  const double sample_time = trials.list.front().model->record().sample_time;
+  return std::sqrt(std::min(1.0, sample_time / criteria::judged_row_s));
+}
+
+bool is_slow_force_noise(const Trials& trials, const Noise& noise) {
   const double slow = noise.slow() / noise.white;
-  return is_soon_forgotten(noise) || slow <= criteria::most_slow_noise ||
+  return is_soon_forgotten(noise) || slow <= criteria::most_slow_noise * white_of_judged_row(trials) ||
          slow * slow * samples_alike(noise) <= criteria::most_slow_density;
 }
 
@@ -96,7 +102,7 @@ bool is_slow_force_noise(const Noise& noise) {
 std::optional<Noise> with_louder_white(const Trials& trials, const std::vector<Fitted>& fitted,
                                        const Noise& noise) {
   Noise louder = noise;
-  louder.white = noise.slow() / criteria::most_slow_noise;
+  louder.white = noise.slow() / (criteria::most_slow_noise * white_of_judged_row(trials));
   std::vector<double> error;
   const double lost =
       noise_misfit(trials, fitted, louder, error) - noise_misfit(trials, fitted, noise, error);
@@ -145,7 +151,7 @@ bool is_soon_forgotten(const Noise& noise) { return noise.memory_samples() < cri
 
 bool is_remainder_noise(const Trials& trials, const std::vector<Fitted>& fitted, const Noise& start) {
   const Noise noise = fit_noise(trials, fitted, start, FreeNoise::all);
-  return is_slow_force_noise(noise) || with_louder_white(trials, fitted, noise) ||
+  return is_slow_force_noise(trials, noise) || with_louder_white(trials, fitted, noise) ||
          as_white(trials, fitted, noise);
 }
 
@@ -156,7 +162,7 @@ Noise fit_noise_alone(const Trials& trials, const std::vector<Fitted>& fitted, c
   from.step =
       std::max(from.step, criteria::usual_slow_noise * from.white * std::sqrt(1 - from.memory * from.memory));
   Noise noise = fit_noise(trials, fitted, from, free);
-  if (is_slow_force_noise(noise)) return noise;
+  if (is_slow_force_noise(trials, noise)) return noise;
   if (const auto white = as_white(trials, fitted, noise)) return *white;
   if (const auto louder = with_louder_white(trials, fitted, noise)) return *louder;
   noise.white = std::hypot(noise.white, noise.slow());

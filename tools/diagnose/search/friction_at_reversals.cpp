@@ -158,9 +158,23 @@ bool FrictionAtReversals::explains(const Rows& one, const Rows& other, double le
   return gained > least_gain && (all <= 0 || all - most > 0);
 }
 
+void FrictionAtReversals::exclude_none() {
+  size_t fitted = 0;
+  for (const Trial& trial : trials_.list)
+    fitted += size_t(std::ranges::count_if(trial.usable, [](char counts) { return counts != 0; }));
+  const bool is_hidden = double(after_reversals_) > criteria::most_hidden_at_turns * double(fitted);
+  if (!is_hidden || present_.mean_square <= criteria::most_mean_square_at_reversals) return;
+  for (size_t m = 0; m < estimate_.members.size(); ++m)
+    for (const Candidate* law : other_laws(*estimate_.members[m].candidate, shapes_, refused_))
+      if (law->at_rest == AtRest::holds &&
+          parameters_of(*law) > parameters_of(*estimate_.members[m].candidate))
+        not_excluded_.push_back({m, law});
+}
+
 std::optional<Estimate> FrictionAtReversals::better() {
   const double numbers = double(after_reversals_ * trials_.ports());
   if (numbers * (present_.mean_square - 1) < criteria::least_gain) return {};
+  exclude_none();
   Rows best;
   for (size_t m = 0; m < estimate_.members.size(); ++m)
     for (const Candidate* law : other_laws(*estimate_.members[m].candidate, shapes_, refused_)) {

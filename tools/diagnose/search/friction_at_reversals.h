@@ -17,8 +17,8 @@ class FrictionAtReversals {
   /// With another law in place of the present one: it explains the rows after reversals, and the present one
   /// does not. These rows count from then on, until forget_reversals(): they determine its parameters.
   std::optional<Estimate> better();
-  /// Laws that do a little better, or with a parameter at the end of its range: not found, and not excluded
-  /// either.
+  /// Laws that do a little better, or with a parameter at the end of its range, or that only rows show which
+  /// nothing explains: not found, and not excluded either.
   struct Law {
     size_t member;
     const Candidate* candidate;
@@ -36,6 +36,9 @@ class FrictionAtReversals {
     double mean_square = 0;       ///< after reversals
     std::vector<double> squares;  ///< after each reversal
   };
+  /// Where the rows after reversals are a large part of the motion, and the present law does not explain
+  /// them, one that differs from it only there may be the true one.
+  void exclude_none();
   Rows on_all_rows(const std::vector<Member>& members, int iterations);
   std::vector<std::vector<double>> best_shapes(size_t member, const Candidate& law);
   Rows with_law(size_t member, const Candidate& law);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include "tools/diagnose/criteria.h"
+#include "tools/diagnose/search/drifting_position.h"
 #include "tools/diagnose/search/noisy_input.h"
 #include "tools/diagnose/search/remaining_force.h"
 #include "tools/diagnose/search/weight.h"
@@ -30,7 +31,8 @@ bool may_be_told(const Trials& trials, const Estimate& trial, size_t member, con
   return !candidate.is_unknown && leaves_no_row_out(trial, candidate) &&
          !is_at_limit(trial.members[member]) && !is_blurred(trials, trial.members[member]) &&
          !spoils_balance(trials, trial, member, weight) &&
-         !is_feigned_by_noise(trials, trial.members, member);
+         !is_feigned_by_noise(trials, trial.members, member) &&
+         !is_feigned_by_drift(trials, trial.members, trial.noise, member);
 }
 
 /// A second law of dry friction, beside the one that was chosen where reversals show the difference.
