@@ -17,8 +17,8 @@ using Kind = Value::Kind;
 
 /// Steps of the solver within a sample, for blocks with states of their own.
 constexpr int steps_per_sample = 4;
-/// The same where something is decided, which happens at the start of a step: a contact that begins late by a
-/// step is too weak, and would seem to be harder.
+/// The same where something is decided, which happens at the start of a step, and again within such a step: a
+/// contact that begins late by a step is too weak, and would seem to be harder.
 constexpr int steps_per_decision = 16;
 
 Value text_value(std::string words, const Place& place = {}) {
@@ -295,7 +295,11 @@ std::shared_ptr<const EffectPlan> compile_effect(const Effect& effect, const Mac
     if (!own.has_errors()) result->is_linear = is_linear(result);
     if (!own.has_errors()) result->is_held = is_held(result);
     if (!own.has_errors() && (result->is_switched = is_switched(result))) {
-      result->finer = with_steps(*result, bench, steps_per_decision, own);
+      auto finer = with_steps(*result, bench, steps_per_decision, own);
+      Problems unlikely;  // a sample time that cannot be divided so often
+      finer->finer = with_steps(*result, bench, steps_per_decision * steps_per_decision, unlikely);
+      if (unlikely.has_errors()) finer->finer = nullptr;
+      result->finer = std::move(finer);
       auto coarser = with_steps(*result, bench, 1, own);
       coarser->is_switched = false;
       if (resolves(coarser, result)) result->coarser = std::move(coarser);

@@ -32,7 +32,8 @@ struct EffectPlan {
   /// remembers: see EffectRun.
   bool is_linear = false;
   bool is_switched = false;  ///< linear in the same way as long as nothing is decided: see switched_effect.h
-  /// Of a switched effect: the same with shorter steps, for the few samples in which something is decided.
+  /// Of a switched effect: the same with shorter steps, for the few samples in which something is decided;
+  /// and of that the same again, for the steps in which it is.
   std::shared_ptr<const EffectPlan> finer;
   /// Of a switched effect that allows it: the same with one step a sample, to rank a grid of shapes by. It
   /// counts as an effect like any other, so that many sets run in lanes.

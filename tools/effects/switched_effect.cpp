@@ -21,6 +21,7 @@ constexpr double long_steps = 0.3;
 
 SwitchedSample::SwitchedSample(std::shared_ptr<const EffectPlan> plan, const std::vector<double>& fitted)
     : plan_(plan->finer ? plan->finer : std::move(plan)), fitted_(fitted), sample_(plan_) {
+  if (plan_->finer) finer_ = std::make_unique<EffectSample>(plan_->finer);
   const std::vector<double> origin = start(0, 0), ahead = start(1, 0), faster = start(0, 1);
   for (size_t i = 0; i < origin.size(); ++i)
     follows_.push_back({ahead[i] - origin[i], faster[i] - origin[i]});
@@ -28,13 +29,18 @@ SwitchedSample::SwitchedSample(std::shared_ptr<const EffectPlan> plan, const std
 
 std::vector<double> SwitchedSample::start(double position, double velocity) {
   sample_.start(fitted_, position, velocity);
+  if (finer_) finer_->start(fitted_, position, velocity);
   return sample_.states();
 }
 
 void SwitchedSample::set_body(const EffectSample::Body& body) {
   body_ = body;
   steps_.reset();
-  if (sample_.steps() > 0) steps_.emplace(sample_, body, differences(small_share * plan_->sizes.top_speed));
+  if (sample_.steps() == 0) return;
+  const std::vector<double> by = differences(small_share * plan_->sizes.top_speed);
+  auto finer =
+      finer_ && finer_->steps() > 0 ? std::make_unique<StepMaps>(*finer_, body, by, nullptr) : nullptr;
+  steps_.emplace(sample_, body, by, std::move(finer));
 }
 
 std::vector<double> SwitchedSample::integrated(const std::vector<double>& states, const GivenSignals& given) {

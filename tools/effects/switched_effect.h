@@ -71,6 +71,7 @@ class SwitchedSample {
   std::shared_ptr<const EffectPlan> plan_;
   std::vector<double> fitted_;
   EffectSample sample_;
+  std::unique_ptr<EffectSample> finer_;  // for steps in which something is decided; null: there is none
   std::optional<EffectSample::Body> body_;
   std::optional<StepMaps> steps_;  // against the body
   std::vector<Follows> follows_;
