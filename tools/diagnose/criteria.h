@@ -47,7 +47,7 @@ constexpr double most_mean_square_at_reversals = 2;
 constexpr double rest_speeds_of_a_fall = 4;
 /// [criterion] Over all rows together, by which another law must do better than the present one.
 constexpr double least_gain_at_reversals = 50;
-/// [rows that are used] Left out after reversals, and not explained: what happens there may be a law.
+/// [fitted rows] Left out after reversals, and not explained: what happens there may be a law.
 constexpr double most_hidden_at_turns = 0.3;
 /// [reversals] Of a record of less than two seconds, which support a verdict even without plenty_of_rows.
 constexpr int plenty_of_reversals = 20;
@@ -82,10 +82,10 @@ constexpr double usual_white_noise = 0.01, least_search_noise = 0.005, most_sear
 constexpr double loud_noise = 0.1, most_portmanteau_of_noise_seen = 120, noise_that_hides = 0.3;
 /// [white force] Slow force of an amplifier.
 constexpr double usual_slow_noise = 0.3;
-/// [white force of judged_row_s; density of the white force at zero frequency] A slow force that exceeds
-/// both is not noise but something that the model lacks. The second counts where a sample is a large part of
-/// its memory: noise of an amplifier has about 5 at any rate.
-constexpr double most_slow_noise = 0.8, most_slow_density = 15;
+/// [white force; density of the white force at zero frequency] A slow force that exceeds both is not noise
+/// but something that the model lacks. The second counts where a sample is a large part of its memory: noise
+/// of an amplifier has about 5. [s] A longer one is compared with the white force of judged_row_s.
+constexpr double most_slow_noise = 0.8, most_slow_density = 15, longest_memory_of_amplifier_s = 0.1;
 /// [sample times] A force that is forgotten sooner is noise, however large: the ripple of an amplifier. What
 /// a model lacks lasts as long as the motion, of which a record shows more samples.
 constexpr double quick_noise = 3;

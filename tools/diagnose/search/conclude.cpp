@@ -174,11 +174,13 @@ void keep_material(Trials& trials, Conclusion& result, size_t catalogue) {
 
 /// Of a record whose rows were put together, a delay and a lag of a few of the new rows. Within a row the
 /// controller has already answered to noise that the predictor has not yet seen; which of the two predicts
-/// better is then no proof.
-void add_blurred_shapes(const Trials& trials, Conclusion& result, const std::vector<Candidate>& candidates) {
+/// better is then no proof. The same of any that could not be compared any more.
+void add_blurred_shapes(const Trials& trials, Conclusion& result, const std::vector<Candidate>& candidates,
+                        bool are_compared) {
   const std::vector<Member>& members = result.estimate.members;
   for (size_t m = 0; m < members.size(); ++m) {
-    if (!is_blurred(trials, members[m])) continue;
+    const bool is_certain = are_compared || !is_late_input(*members[m].candidate);
+    if (is_certain && !is_blurred(trials, members[m])) continue;
     for (const Candidate& other : candidates) {
       if (!is_late_input(other) || &other == members[m].candidate) continue;
       if (std::ranges::find(members, &other, &Member::candidate) == members.end())
@@ -264,7 +266,7 @@ void ask_rivals(const Trials& trials, Conclusion& result, Evidence& evidence,
       if (member == m) add_if_new(result.substitutes.back(), law);
     result.inclusion.push_back(inclusion_of(result.weights[m], result.substitutes[m]));
   }
-  add_blurred_shapes(trials, result, candidates);
+  add_blurred_shapes(trials, result, candidates, !rivals.is_spent());
   add_late_shapes(trials, result, rivals, swaps, candidates.size());
 }
 

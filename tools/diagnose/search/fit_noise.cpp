@@ -85,15 +85,17 @@ namespace {
 /// Of a slow force: spectral density at zero frequency over variance, in sample times.
 double samples_alike(const Noise& noise) { return (1 + noise.memory) / (1 - noise.memory); }
 
-/// [white force of a row] That of its mean over criteria::judged_row_s: the faster the rows, the smaller.
-double white_of_judged_row(const Trials& trials) {
+/// [white force of a row] That a slow force is compared with: the faster the rows, the louder is each beside
+/// a force that lasts longer than that of an amplifier, which is compared with the mean over some rows.
+double white_beside(const Trials& trials, const Noise& noise) {
   const double sample_time = trials.list.front().model->record().sample_time;
-  return std::sqrt(std::min(1.0, sample_time / criteria::judged_row_s));
+  const bool is_long = noise.memory_samples() * sample_time > criteria::longest_memory_of_amplifier_s;
+  return is_long ? std::sqrt(std::min(1.0, sample_time / criteria::judged_row_s)) : 1;
 }
 
 bool is_slow_force_noise(const Trials& trials, const Noise& noise) {
   const double slow = noise.slow() / noise.white;
-  return is_soon_forgotten(noise) || slow <= criteria::most_slow_noise * white_of_judged_row(trials) ||
+  return is_soon_forgotten(noise) || slow <= criteria::most_slow_noise * white_beside(trials, noise) ||
          slow * slow * samples_alike(noise) <= criteria::most_slow_density;
 }
 
@@ -102,7 +104,7 @@ bool is_slow_force_noise(const Trials& trials, const Noise& noise) {
 std::optional<Noise> with_louder_white(const Trials& trials, const std::vector<Fitted>& fitted,
                                        const Noise& noise) {
   Noise louder = noise;
-  louder.white = noise.slow() / (criteria::most_slow_noise * white_of_judged_row(trials));
+  louder.white = noise.slow() / (criteria::most_slow_noise * white_beside(trials, noise));
   std::vector<double> error;
   const double lost =
       noise_misfit(trials, fitted, louder, error) - noise_misfit(trials, fitted, noise, error);

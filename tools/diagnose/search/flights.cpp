@@ -17,6 +17,14 @@ constexpr double least_gain_of_other_load = 10;
 /// Of one load to the next that is tried, and how often in one direction.
 constexpr double heavier = 1.6;
 constexpr int most_heavier = 3;
+/// Gaps that are looked at differ by this factor at most.
+constexpr double gaps_around = 4;
+
+/// The load that flies; the number of members if there is none.
+size_t flying_in(const std::vector<Member>& members) {
+  const auto flies = [](const Member& m) { return bool(m.candidate->switched_load); };
+  return size_t(std::ranges::find_if(members, flies) - members.begin());
+}
 
 /// All shapes of a load but the first one, the gap, as they usually are; whether one of them was far from it.
 bool begin_anew(Member& load) {
@@ -52,40 +60,62 @@ bool take_if_better(Trials& trials, Estimate& best, std::vector<Member> members)
 
 /// A heavier and a lighter load on the same flank push alike for a moment: where the errors are not white,
 /// both are tried.
-Estimate with_other_loads(Trials& trials, Estimate best, size_t load) {
+Estimate with_other_loads(Trials& trials, Estimate best) {
   if (!best.is_valid || portmanteau(trials, *best.fitted) <= 2 * criteria::portmanteau_lags) return best;
   for (const double factor : {heavier, 1 / heavier})
     for (int n = 0; n < most_heavier; ++n) {
       std::vector<Member> members = best.members;
-      change_load(members[load], factor);
+      change_load(members[flying_in(members)], factor);
       if (!take_if_better(trials, best, std::move(members))) break;
     }
   return best;
 }
 
 /// And another gap, where they still are not.
-Estimate with_other_gaps(Trials& trials, Estimate best, size_t load) {
+Estimate with_other_gaps(Trials& trials, Estimate best) {
   if (!best.is_valid || portmanteau(trials, *best.fitted) <= 2 * criteria::portmanteau_lags) return best;
-  for (std::vector<Member>& members : other_gaps(trials, best, load))
+  for (std::vector<Member>& members : other_gaps(trials, best, flying_in(best.members)))
     take_if_better(trials, best, std::move(members));
+  return best;
+}
+
+/// And the gaps around it, in flight: moved along the path, without the moments of its blows, a load promises
+/// too little in the right gap.
+Estimate with_gaps_around(Trials& trials, Estimate best) {
+  if (!best.is_valid || portmanteau(trials, *best.fitted) <= 2 * criteria::portmanteau_lags) return best;
+  const size_t load = flying_in(best.members);
+  const double present = best.members[load].nonlinear[0];
+  double least = best.profile - least_gain_of_other_load;
+  std::vector<Member> closest;
+  for (const double gap : best.members[load].candidate->nonlinear[0].grid) {
+    if (std::abs(std::log(gap / present)) > std::log(gaps_around)) continue;
+    if (trials.work->is_spent(criteria::work_with_rivals)) break;
+    std::vector<Member> members = best.members;
+    members[load].nonlinear[0] = gap;
+    const Estimate other = fit_members(trials, members, best.noise, best.motion, 0);
+    if (other.is_valid && other.profile < least) least = other.profile, closest = std::move(members);
+  }
+  if (closest.empty() || !take_if_better(trials, best, std::move(closest))) return best;
+  best = with_other_loads(trials, std::move(best));
+  std::vector<Member> usual = best.members;
+  if (begin_anew(usual[load])) take_if_better(trials, best, std::move(usual));
   return best;
 }
 
 }  // namespace
 
 Estimate fitted_in_flight(Trials& trials, Estimate found) {
-  const auto flies =
-      std::ranges::find_if(found.members, [](const Member& m) { return bool(m.candidate->switched_load); });
-  if (flies == found.members.end()) return found;
+  const size_t load = flying_in(found.members);
+  if (load == found.members.size()) return found;
   std::vector<Member> members = found.members;
-  const size_t load = size_t(flies - found.members.begin());
   const bool was_far = begin_anew(members[load]);
   Estimate best = fit_members(trials, found.members, found.noise, found.motion, iterations_in_flight);
   if (was_far) {
     Estimate other = fit_members(trials, std::move(members), found.noise, found.motion, iterations_in_flight);
     if (other.is_valid && (!best.is_valid || other.profile < best.profile)) best = std::move(other);
   }
-  return with_other_gaps(trials, with_other_loads(trials, std::move(best), load), load);
+  best = with_other_gaps(trials, with_other_loads(trials, std::move(best)));
+  return with_gaps_around(trials, std::move(best));
 }
 
 }  // namespace loopwright::diagnosis

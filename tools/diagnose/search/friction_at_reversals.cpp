@@ -159,10 +159,8 @@ bool FrictionAtReversals::explains(const Rows& one, const Rows& other, double le
 }
 
 void FrictionAtReversals::exclude_none() {
-  size_t fitted = 0;
-  for (const Trial& trial : trials_.list)
-    fitted += size_t(std::ranges::count_if(trial.usable, [](char counts) { return counts != 0; }));
-  const bool is_hidden = double(after_reversals_) > criteria::most_hidden_at_turns * double(fitted);
+  const double fitted = double(fitted_numbers(trials_)) / double(trials_.ports());
+  const bool is_hidden = double(after_reversals_) > criteria::most_hidden_at_turns * fitted;
   if (!is_hidden || present_.mean_square <= criteria::most_mean_square_at_reversals) return;
   for (size_t m = 0; m < estimate_.members.size(); ++m)
     for (const Candidate* law : other_laws(*estimate_.members[m].candidate, shapes_, refused_))
