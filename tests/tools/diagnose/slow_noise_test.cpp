@@ -13,12 +13,12 @@ namespace {
 /// 0.5 kg with 7 N s/m at 200 Hz. A slow force of 18 ms is larger than the white one, which is small at this
 /// rate; its density at zero frequency is nine times that of the white one.
 struct NoisyMachine {
-  double sample_time = 5e-3, white = 0.03, slow = 0.033, time = 0.018, sensor_noise = 0;
+  double sample_time = 5e-3, white = 0.03, slow = 0.033, time = 0.018, sensor_noise = 0, count = 1.5e-7;
   int rows = 2000;
 };
 
 std::string record(const NoisyMachine& machine) {
-  constexpr double mass = 0.5, damping = 7, count = 1.5e-7;
+  constexpr double mass = 0.5, damping = 7;
   constexpr int substeps = 100;
   std::mt19937_64 random(4);
   std::normal_distribution<double> normal(0, 1);
@@ -29,7 +29,7 @@ std::string record(const NoisyMachine& machine) {
     const double t = k * machine.sample_time;
     const double u = 2 * std::sin(2.1 * t) + 1.5 * std::sin(7.3 * t) + std::sin(19 * t);
     const double read = x + machine.sensor_noise * normal(random);
-    text += fmt::format("{:.8g},{:.12g},{:.12g}\n", t, u, count * std::round(read / count));
+    text += fmt::format("{:.8g},{:.12g},{:.12g}\n", t, u, machine.count * std::round(read / machine.count));
     drift = memory * drift + machine.slow * std::sqrt(1 - memory * memory) * normal(random);
     const double disturbance = machine.white * normal(random) + drift;
     for (int i = 0; i < substeps; ++i) {  // semi-implicit Euler
@@ -50,10 +50,13 @@ void write(const NoisyMachine& machine, DiagramFolder& folder) {
  "net":   {"type": "Sum", "signs": "+-", "in": {"terms": ["drive.y", "vis.force"]}},
  "m":     {"type": "Mass", "mass": {"value": 0.5, "unit": "kg"}, "in": {"force": "net.sum"}}}})");
   folder.with("record.csv", record(machine));
-  folder.with("e.json",
-              R"({"loopwright": 1, "data": "record.csv", "time": "t", "drive": {"drive.u": {"column": "u"}},
- "compare": {"m.position": {"column": "x", "resolution": "1.5e-7 m"}},
- "roles": {"position": "m.position", "velocity": "m.velocity", "force": "net.sum", "input": "drive.u"}})");
+  folder.with(
+      "e.json",
+      fmt::format(
+          R"({{"loopwright": 1, "data": "record.csv", "time": "t", "drive": {{"drive.u": {{"column": "u"}}}},
+ "compare": {{"m.position": {{"column": "x", "resolution": "{} m"}}}},
+ "roles": {{"position": "m.position", "velocity": "m.velocity", "force": "net.sum", "input": "drive.u"}}}})",
+          machine.count));
 }
 
 TEST(SlowNoise, ThatIsForgottenWithinAFewSamplesIsNoise) {
@@ -100,11 +103,11 @@ TEST(SlowNoise, FarAboveWhiteNoiseThatIsSeenIsNone) {
 }
 
 /// Rows of 20 kHz have each much white noise, beside which any slow force is small: that of a millisecond
-/// decides. A force that rises and falls within 0.3 s, and exceeds it, is something that the model lacks;
+/// decides. A force that rises and falls within 0.6 s, and exceeds it, is something that the model lacks;
 /// that of an amplifier is noise at this rate too.
 TEST(SlowNoise, IsComparedWithTheWhiteNoiseOfAMillisecondAtAnyRate) {
   NoisyMachine fast{
-      .sample_time = 5e-5, .white = 0.4, .slow = 0.12, .time = 0.3, .sensor_noise = 0, .rows = 60000};
+      .sample_time = 5e-5, .white = 0.4, .slow = 0.2, .time = 0.6, .count = 1e-10, .rows = 60000};
   EXPECT_FALSE(remainder_of(fast).is_noise);
   fast.slow = 0.03, fast.time = 0.01;
   EXPECT_TRUE(remainder_of(fast).is_noise);
