@@ -59,19 +59,22 @@ class Diagnosis(unittest.TestCase):
                 self.assertTrue(score.exact(result), f"{score.true_names(result)} hidden, {score.found_names(result)} named")
 
     def test_a_load_is_found_in_its_gap_or_something_is_said_to_be_left(self):
-        seeds = {904480: "it hits a flank only where the steady speeds change, and the search ends before it is seen",
-                 905682: "along the path, without the moments of its blows, it promises more in half the gap"}
-        for seed, why in seeds.items():
-            with self.subTest(seed=seed, why=why):
+        # 905682: along the path, without the moments of its blows, it promises more in half the gap. 904480: it hits a flank only where
+        # the steady speeds change, and the work is spent before it is seen.
+        for seed, may_be_flagged in ((905682, False), (904480, True)):
+            with self.subTest(seed=seed):
                 result = diagnosed(seed)
                 hidden = next(e["parameters"]["gap"] for e in result["truth"]["effects"] if e["effect"] == "backlash")
                 found = [e["parameters"]["gap"]["value"] for e in score.found(result) if e["effect"] == "backlash"]
                 is_right = score.exact(result) and abs(found[0] / hidden - 1) < 0.1
-                self.assertTrue(is_right or score.flagged(result), f"a gap of {hidden} is told as {found}, {result['answer']['verdict']}")
+                self.assertTrue(is_right or (may_be_flagged and score.flagged(result)),
+                                f"a gap of {hidden} is told as {found}, {result['answer']['verdict']}")
 
     def test_a_late_input_that_could_not_be_compared_is_declared(self):
         result = diagnosed(905719)  # a delay of a part of a row beside a load in a gap, which takes all the work
         self.assertTrue(score.exact_or_declared(result), score.found_names(result))
+        late = next(e for e in score.found(result) if e["effect"] in ("input_delay", "actuator_lag"))
+        self.assertEqual({late["effect"], *score.alternatives(late)}, {"input_delay", "actuator_lag"})
 
     def test_declares_laws_of_the_velocity_whose_sum_is_alike(self):
         result = diagnosed(903891)  # a drag of eddy currents is smooth friction, more square drag and less damping

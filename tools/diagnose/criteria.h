@@ -41,13 +41,13 @@ constexpr double most_rows = 120000, thinned_sample_s = 2e-3;
 constexpr double changes_of_noise = 1.6;
 /// [rows] On both sides of a change of sign, where the sign of dry friction is not certain.
 constexpr size_t rows_of_a_turn = 1;
-/// [mean square] Of rows after reversals that a law explains. Where an axis sticks, or is noisy: hundreds.
+/// [mean square] Of rows after reversals that a law explains: hundreds where it sticks or its sensor is loud.
 constexpr double most_mean_square_at_reversals = 2;
 /// [rest_speed] Friction that falls within fewer of them is not seen after reversals.
 constexpr double rest_speeds_of_a_fall = 4;
 /// [criterion] Over all rows together, by which another law must do better than the present one.
 constexpr double least_gain_at_reversals = 50;
-/// [fitted rows] Left out after reversals, and not explained: what happens there may be a law.
+/// [fitted rows] Left out after reversals: a law that differs only there may be the true one.
 constexpr double most_hidden_at_turns = 0.3;
 /// [reversals] Of a record of less than two seconds, which support a verdict even without plenty_of_rows.
 constexpr int plenty_of_reversals = 20;
@@ -84,8 +84,8 @@ constexpr double loud_noise = 0.1, most_portmanteau_of_noise_seen = 120, noise_t
 constexpr double usual_slow_noise = 0.3;
 /// [white force; density of the white force at zero frequency] A slow force that exceeds both is not noise
 /// but something that the model lacks. The second counts where a sample is a large part of its memory: noise
-/// of an amplifier has about 5. [s] A longer one is compared with the white force of judged_row_s.
-constexpr double most_slow_noise = 0.8, most_slow_density = 15, longest_memory_of_amplifier_s = 0.1;
+/// of an amplifier has about 5. [s] From one to twice this memory on, with the white force of judged_row_s.
+constexpr double most_slow_noise = 0.8, most_slow_density = 15, longest_memory_of_amplifier_s = 0.05;
 /// [sample times] A force that is forgotten sooner is noise, however large: the ripple of an amplifier. What
 /// a model lacks lasts as long as the motion, of which a record shows more samples.
 constexpr double quick_noise = 3;
@@ -160,8 +160,8 @@ constexpr double negligible_force = 1e-3, usual_share = 0.9;
 /// Of the force of an effect, as far as the balance of forces along the smooth motion shows it: 1 if it is
 /// there, 0 if it is not, with a bias where a controller answers to noise.
 constexpr double least_force_share = 0.3;
-/// [force of a load on a spring] Of which the balance shows less, below its 80 Hz, it says nothing.
-constexpr double least_seen_of_load = 0.5;
+/// [force of a load on a spring] Of which the balance, below its 80 Hz, shows enough to speak for or against.
+constexpr double least_seen_of_load = 0.5, least_opposed_of_load = 0.05;
 /// [standard deviations] By which the share must be below.
 constexpr double sure_deviations = 2;
 /// [of 80 Hz, or of a tenth of the sampling rate] The slow balance of forces, in which the noise of a sensor

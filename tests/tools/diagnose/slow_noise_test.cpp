@@ -109,7 +109,7 @@ TEST(SlowNoise, IsComparedWithTheWhiteNoiseOfAMillisecondAtAnyRate) {
   NoisyMachine fast{
       .sample_time = 5e-5, .white = 0.4, .slow = 0.2, .time = 0.6, .count = 1e-10, .rows = 60000};
   EXPECT_FALSE(remainder_of(fast).is_noise);
-  fast.slow = 0.03, fast.time = 0.01;
+  fast.slow = 0.12, fast.time = 0.03;  // more than a fifth of the white noise, which is that of a millisecond
   EXPECT_TRUE(remainder_of(fast).is_noise);
 }
 

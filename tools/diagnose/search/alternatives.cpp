@@ -42,6 +42,13 @@ void add_if_new(std::vector<Substitute>& list, const Candidate* candidate) {
     list.push_back({candidate, 0});
 }
 
+void add_other_late_inputs(std::vector<Substitute>& list, const std::vector<Member>& members,
+                           const std::vector<Candidate>& candidates) {
+  for (const Candidate& other : candidates)
+    if (is_late_input(other) && std::ranges::find(members, &other, &Member::candidate) == members.end())
+      add_if_new(list, &other);
+}
+
 void add_simpler_friction(std::vector<Substitute>& list, const Trials& trials, Rivals& rivals,
                           const Estimate& estimate, size_t member, const std::vector<Proposal>& exchanges) {
   const Candidate& shaped = *estimate.members[member].candidate;

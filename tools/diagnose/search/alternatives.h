@@ -26,6 +26,10 @@ void add_laws(const std::vector<OtherSet>& laws, std::vector<OtherSet>& sets);
 
 void add_if_new(std::vector<Substitute>& list, const Candidate* candidate);
 
+/// A delay for a lag, or a lag for a delay, of a set that has only one of them.
+void add_other_late_inputs(std::vector<Substitute>& list, const std::vector<Member>& members,
+                           const std::vector<Candidate>& candidates);
+
 /// [-2 ln L] Far from its operating point the loss that a linearization promises may be wrong by so much.
 inline constexpr double error_of_promise = 100;
 

@@ -174,13 +174,11 @@ void keep_material(Trials& trials, Conclusion& result, size_t catalogue) {
 
 /// Of a record whose rows were put together, a delay and a lag of a few of the new rows. Within a row the
 /// controller has already answered to noise that the predictor has not yet seen; which of the two predicts
-/// better is then no proof. The same of any that could not be compared any more.
-void add_blurred_shapes(const Trials& trials, Conclusion& result, const std::vector<Candidate>& candidates,
-                        bool are_compared) {
+/// better is then no proof.
+void add_blurred_shapes(const Trials& trials, Conclusion& result, const std::vector<Candidate>& candidates) {
   const std::vector<Member>& members = result.estimate.members;
   for (size_t m = 0; m < members.size(); ++m) {
-    const bool is_certain = are_compared || !is_late_input(*members[m].candidate);
-    if (is_certain && !is_blurred(trials, members[m])) continue;
+    if (!is_blurred(trials, members[m])) continue;
     for (const Candidate& other : candidates) {
       if (!is_late_input(other) || &other == members[m].candidate) continue;
       if (std::ranges::find(members, &other, &Member::candidate) == members.end())
@@ -258,15 +256,17 @@ void ask_rivals(const Trials& trials, Conclusion& result, Evidence& evidence,
   const std::vector<double> removal = evidence.gains_of_removal(n);
   for (size_t m = 0; m < members.size(); ++m) {
     result.weights[m].loss = -removal[m];
+    const bool is_not_compared = is_late_member(members[m]) && rivals.is_spent();
     result.substitutes.push_back(
         substitutes_of(rivals, m, *members[m].candidate, near, result.weights[m].loss));
     add_laws(laws, *members[m].candidate, result.weights[m].loss, result.substitutes.back());
     add_simpler_friction(result.substitutes.back(), trials, rivals, result.estimate, m, exchanges);
     for (const auto& [member, law] : at_reversals.not_excluded())
       if (member == m) add_if_new(result.substitutes.back(), law);
+    if (is_not_compared) add_other_late_inputs(result.substitutes.back(), members, candidates);
     result.inclusion.push_back(inclusion_of(result.weights[m], result.substitutes[m]));
   }
-  add_blurred_shapes(trials, result, candidates, !rivals.is_spent());
+  add_blurred_shapes(trials, result, candidates);
   add_late_shapes(trials, result, rivals, swaps, candidates.size());
 }
 

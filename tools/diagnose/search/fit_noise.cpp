@@ -89,8 +89,10 @@ double samples_alike(const Noise& noise) { return (1 + noise.memory) / (1 - nois
 /// a force that lasts longer than that of an amplifier, which is compared with the mean over some rows.
 double white_beside(const Trials& trials, const Noise& noise) {
   const double sample_time = trials.list.front().model->record().sample_time;
-  const bool is_long = noise.memory_samples() * sample_time > criteria::longest_memory_of_amplifier_s;
-  return is_long ? std::sqrt(std::min(1.0, sample_time / criteria::judged_row_s)) : 1;
+  const double memory = noise.memory_samples() * sample_time, usual = criteria::longest_memory_of_amplifier_s;
+  const double longer = std::clamp(memory / usual - 1, 0.0, 1.0);
+  const double mean_over = sample_time + longer * std::max(0.0, criteria::judged_row_s - sample_time);
+  return std::sqrt(sample_time / mean_over);
 }
 
 bool is_slow_force_noise(const Trials& trials, const Noise& noise) {

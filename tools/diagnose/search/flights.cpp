@@ -1,6 +1,7 @@
 #include "tools/diagnose/search/flights.h"
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/gaps.h"
 #include "tools/diagnose/search/whiteness.h"
@@ -17,8 +18,10 @@ constexpr double least_gain_of_other_load = 10;
 /// Of one load to the next that is tried, and how often in one direction.
 constexpr double heavier = 1.6;
 constexpr int most_heavier = 3;
-/// Gaps that are looked at differ by this factor at most.
-constexpr double gaps_around = 4;
+/// Gaps that are looked at differ by this factor at most, that of half the gap with half the load and more;
+/// around the best of them by so many steps, within which a fit reaches the likelihood's maximum.
+constexpr double gaps_around = 4, step_around = 1.025;
+constexpr int steps_around = 2;
 
 /// The load that flies; the number of members if there is none.
 size_t flying_in(const std::vector<Member>& members) {
@@ -79,23 +82,38 @@ Estimate with_other_gaps(Trials& trials, Estimate best) {
   return best;
 }
 
+/// That of these gaps in which the members, as they are otherwise, explain most by more than `least_gain`.
+std::optional<double> best_gap(Trials& trials, const Estimate& estimate, const std::vector<double>& gaps,
+                               double least_gain) {
+  std::optional<double> best;
+  double least = estimate.profile - least_gain;
+  std::vector<Member> members = estimate.members;
+  for (const double gap : gaps) {
+    if (trials.work->is_spent(criteria::work_with_rivals)) break;
+    members[flying_in(members)].nonlinear[0] = gap;
+    const Estimate other = fit_members(trials, members, estimate.noise, estimate.motion, 0);
+    if (other.is_valid && other.profile < least) least = other.profile, best = gap;
+  }
+  return best;
+}
+
 /// And the gaps around it, in flight: moved along the path, without the moments of its blows, a load promises
 /// too little in the right gap.
 Estimate with_gaps_around(Trials& trials, Estimate best) {
   if (!best.is_valid || portmanteau(trials, *best.fitted) <= 2 * criteria::portmanteau_lags) return best;
   const size_t load = flying_in(best.members);
+  const CandidateParameter& range = best.members[load].candidate->nonlinear[0];
   const double present = best.members[load].nonlinear[0];
-  double least = best.profile - least_gain_of_other_load;
-  std::vector<Member> closest;
-  for (const double gap : best.members[load].candidate->nonlinear[0].grid) {
-    if (std::abs(std::log(gap / present)) > std::log(gaps_around)) continue;
-    if (trials.work->is_spent(criteria::work_with_rivals)) break;
-    std::vector<Member> members = best.members;
-    members[load].nonlinear[0] = gap;
-    const Estimate other = fit_members(trials, members, best.noise, best.motion, 0);
-    if (other.is_valid && other.profile < least) least = other.profile, closest = std::move(members);
-  }
-  if (closest.empty() || !take_if_better(trials, best, std::move(closest))) return best;
+  std::vector<double> gaps, fine;
+  for (const double gap : range.grid)
+    if (std::abs(std::log(gap / present)) < std::log(gaps_around)) gaps.push_back(gap);
+  const auto coarse = best_gap(trials, best, gaps, least_gain_of_other_load);
+  if (!coarse) return best;
+  for (int step = -steps_around; step <= steps_around; ++step)
+    fine.push_back(std::clamp(*coarse * std::pow(step_around, step), range.low, range.high));
+  std::vector<Member> members = best.members;
+  members[load].nonlinear[0] = best_gap(trials, best, fine, least_gain_of_other_load).value_or(*coarse);
+  if (!take_if_better(trials, best, std::move(members))) return best;
   best = with_other_loads(trials, std::move(best));
   std::vector<Member> usual = best.members;
   if (begin_anew(usual[load])) take_if_better(trials, best, std::move(usual));

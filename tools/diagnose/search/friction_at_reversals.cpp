@@ -88,7 +88,7 @@ FrictionAtReversals::FrictionAtReversals(Trials& trials, const Estimate& estimat
   for (size_t t = 0; t < rows_.size(); ++t)
     for (size_t k = 0; k < trials.list[t].held_out_from; ++k)
       after_reversals_ += rows_[t][k] > trials.list[t].usable[k];
-  if (after_reversals_ > 0) present_ = on_all_rows(estimate.members, 4);
+  if (after_reversals_ > 0) present_ = on_all_rows(estimate.members, 4), exclude_none();
 }
 
 FrictionAtReversals::Rows FrictionAtReversals::on_all_rows(const std::vector<Member>& members,
@@ -162,17 +162,18 @@ void FrictionAtReversals::exclude_none() {
   const double fitted = double(fitted_numbers(trials_)) / double(trials_.ports());
   const bool is_hidden = double(after_reversals_) > criteria::most_hidden_at_turns * fitted;
   if (!is_hidden || present_.mean_square <= criteria::most_mean_square_at_reversals) return;
-  for (size_t m = 0; m < estimate_.members.size(); ++m)
-    for (const Candidate* law : other_laws(*estimate_.members[m].candidate, shapes_, refused_))
-      if (law->at_rest == AtRest::holds &&
-          parameters_of(*law) > parameters_of(*estimate_.members[m].candidate))
+  for (size_t m = 0; m < estimate_.members.size(); ++m) {
+    const Candidate& present = *estimate_.members[m].candidate;
+    if (present.at_rest != AtRest::holds) continue;
+    for (const Candidate* law : other_laws(present, shapes_, refused_))
+      if (law->at_rest == AtRest::holds && parameters_of(*law) > parameters_of(present))
         not_excluded_.push_back({m, law});
+  }
 }
 
 std::optional<Estimate> FrictionAtReversals::better() {
   const double numbers = double(after_reversals_ * trials_.ports());
   if (numbers * (present_.mean_square - 1) < criteria::least_gain) return {};
-  exclude_none();
   Rows best;
   for (size_t m = 0; m < estimate_.members.size(); ++m)
     for (const Candidate* law : other_laws(*estimate_.members[m].candidate, shapes_, refused_)) {

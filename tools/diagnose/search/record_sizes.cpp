@@ -1,10 +1,22 @@
 #include "tools/diagnose/search/record_sizes.h"
 #include <algorithm>
 #include <cmath>
+#include "models/real/fraction.h"
 #include "models/real/whole.h"
 #include "tools/diagnose/criteria.h"
 
 namespace loopwright::diagnosis {
+namespace {
+
+/// The mean of uneven stamps has any digits, and its parts are then no whole number of ticks. A fraction that
+/// is as close as no clock is has a denominator that leaves room to divide it.
+double divisible(double sample_time) {
+  constexpr double of_no_clock = 1e-9;
+  const auto fraction = to_fraction(sample_time, of_no_clock);
+  return fraction ? fraction->value() : sample_time;
+}
+
+}  // namespace
 
 RecordSizes sizes_of(const std::vector<std::shared_ptr<const Path>>& paths,
                      const std::vector<const AxisModel*>& models) {
@@ -52,7 +64,7 @@ RecordSizes sizes_of(const std::vector<std::shared_ptr<const Path>>& paths,
   // An axis that coasts is hardly driven: what slows it down is seen by what it does to its mass.
   const double inertial = std::sqrt(squared_inertial / std::max(accelerations, 1.0));
   if (sizes.force_level < criteria::least_driving_share * inertial) sizes.force_level = inertial;
-  sizes.sample_time = paths.front()->sample_time;
+  sizes.sample_time = divisible(paths.front()->sample_time);
   sizes.start = models.front()->record().start;
   sizes.clocks_differ = std::ranges::any_of(models, [&](const AxisModel* model) {
     return std::abs(model->record().start - sizes.start) > 0.5 * sizes.sample_time;

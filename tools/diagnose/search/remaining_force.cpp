@@ -218,7 +218,9 @@ bool spoils_balance(const Trials& trials, const Estimate& estimate, size_t membe
       share_of_force(trials, *trials.inverse, estimate.members, without_one(estimate.members, member));
   const bool is_seen = share.force > criteria::least_seen_of_load * weight.force_rms;
   const double most_found = share.found + criteria::sure_deviations * share.deviation;
-  if (!is_seen && most_found >= 0 && is_own_load(estimate.members[member])) return false;
+  const bool is_opposed =
+      !is_loud && most_found < 0 && share.force > criteria::least_opposed_of_load * weight.force_rms;
+  if (!is_seen && !is_opposed && is_own_load(estimate.members[member])) return false;
   return most_found < criteria::least_force_share &&
          !is_late_in_slow_balance(trials, estimate.members, member);
 }

@@ -58,8 +58,8 @@ bool is_held_out(const Trials& trials, const std::vector<InverseDynamics>& inver
 /// the errors, and quieter than the noise in the balance, is not asked. Nor is a load that flies: the moments
 /// of its blows are not those of the smooth motion. Nor is a loud effect at the input that is smaller than
 /// what the noise of the sensor leaves in the balance: a controller answers to that noise. Nor is a load on a
-/// spring that swings faster than the balance shows, unless what it shows is the opposite. Nor does an input
-/// spoil it that the slow balance shows to be late.
+/// spring that swings faster than the balance shows, unless it is not loud and a part of its force that does
+/// show has the opposite sign. Nor does an input spoil it that the slow balance shows to be late.
 bool spoils_balance(const Trials& trials, const Estimate& estimate, size_t member, const Weight& weight);
 
 /// Whether a member is an input that the slow part of the motion surely shows to be late. What a controller
