@@ -18,8 +18,8 @@ constexpr double least_gain_of_other_load = 10;
 /// Of one load to the next that is tried, and how often in one direction.
 constexpr double heavier = 1.6;
 constexpr int most_heavier = 3;
-/// Gaps that are looked at differ by this factor at most, that of half the gap with half the load and more;
-/// around the best of them by so many steps, within which a fit reaches the likelihood's maximum.
+/// Gaps within this factor of the present one are tried, because loads were found in half of their gaps; then
+/// some steps around the best of them, from one of which a fit reaches the maximum.
 constexpr double gaps_around = 4, step_around = 1.025;
 constexpr int steps_around = 2;
 
@@ -82,11 +82,10 @@ Estimate with_other_gaps(Trials& trials, Estimate best) {
   return best;
 }
 
-/// That of these gaps in which the members, as they are otherwise, explain most by more than `least_gain`.
-std::optional<double> best_gap(Trials& trials, const Estimate& estimate, const std::vector<double>& gaps,
-                               double least_gain) {
+/// That of these gaps in which the members, as they are otherwise, explain most. Empty: in none clearly more.
+std::optional<double> best_gap(Trials& trials, const Estimate& estimate, const std::vector<double>& gaps) {
   std::optional<double> best;
-  double least = estimate.profile - least_gain;
+  double least = estimate.profile - least_gain_of_other_load;
   std::vector<Member> members = estimate.members;
   for (const double gap : gaps) {
     if (trials.work->is_spent(criteria::work_with_rivals)) break;
@@ -107,12 +106,12 @@ Estimate with_gaps_around(Trials& trials, Estimate best) {
   std::vector<double> gaps, fine;
   for (const double gap : range.grid)
     if (std::abs(std::log(gap / present)) < std::log(gaps_around)) gaps.push_back(gap);
-  const auto coarse = best_gap(trials, best, gaps, least_gain_of_other_load);
+  const auto coarse = best_gap(trials, best, gaps);
   if (!coarse) return best;
   for (int step = -steps_around; step <= steps_around; ++step)
     fine.push_back(std::clamp(*coarse * std::pow(step_around, step), range.low, range.high));
   std::vector<Member> members = best.members;
-  members[load].nonlinear[0] = best_gap(trials, best, fine, least_gain_of_other_load).value_or(*coarse);
+  members[load].nonlinear[0] = best_gap(trials, best, fine).value_or(*coarse);
   if (!take_if_better(trials, best, std::move(members))) return best;
   best = with_other_loads(trials, std::move(best));
   std::vector<Member> usual = best.members;
