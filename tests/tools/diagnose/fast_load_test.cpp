@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 #include <random>
-#include "tests/engine/diagram/diagram_folder.h"
 #include "tests/tools/diagnose/diagnosed.h"
+#include "tests/tools/diagnose/plain_axis.h"
 
 namespace loopwright::fast_load_test {
 namespace {
@@ -13,9 +13,11 @@ namespace {
 constexpr double mass = 0.5, damping = 7, load = 0.05, hz = 200, damping_ratio = 0.03,
                  turn = 2 * std::numbers::pi;
 
+constexpr double sample_time = 5e-5, count = 1e-9;
+
 /// 0.6 s at 20 kHz of forces of 4 to 230 Hz, open loop.
 std::string record(unsigned seed) {
-  constexpr double sample_time = 5e-5, count = 1e-9, sensor_noise = 3e-8, force_noise = 0.1;
+  constexpr double sensor_noise = 3e-8, force_noise = 0.1;
   constexpr int rows = 12000, substeps = 10;
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal(0, 1);
@@ -41,18 +43,8 @@ std::string record(unsigned seed) {
 
 Diagnosis diagnosed(unsigned seed) {
   DiagramFolder folder;
-  folder.with("axis.json",
-              R"({"loopwright": 1, "solver": {"method": "rk4", "step": 0.00005, "stop": 10}, "blocks": {
- "u":     {"type": "Constant", "value": {"value": 0, "unit": "N"}},
- "drive": {"type": "Gain", "gain": 1, "in": {"u": "u.y"}},
- "vis":   {"type": "ViscousFriction", "damping": {"value": 7, "unit": "N*s/m"}, "in": {"velocity": "m.velocity"}},
- "net":   {"type": "Sum", "signs": "+-", "in": {"terms": ["drive.y", "vis.force"]}},
- "m":     {"type": "Mass", "mass": {"value": 0.5, "unit": "kg"}, "in": {"force": "net.sum"}}}})");
-  folder.with("record.csv", record(seed));
-  folder.with("e.json",
-              R"({"loopwright": 1, "data": "record.csv", "time": "t", "drive": {"drive.u": {"column": "u"}},
- "compare": {"m.position": {"column": "x", "resolution": "1e-9 m"}}, "hold_out": {"fraction": 0.25},
- "roles": {"position": "m.position", "velocity": "m.velocity", "force": "net.sum", "input": "drive.u"}})");
+  write_plain_axis(folder,
+                   {.csv = record(seed), .count = count, .solver_step = sample_time, .held_out = 0.25});
   return diagnose(folder.path("axis.json"), {folder.path("e.json")}, {});
 }
 

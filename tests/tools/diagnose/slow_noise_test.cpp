@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <cmath>
 #include <random>
-#include "tests/engine/diagram/diagram_folder.h"
 #include "tests/tools/diagnose/diagnosed.h"
+#include "tests/tools/diagnose/plain_axis.h"
 #include "tools/diagnose/search/prepare.h"
 
 namespace loopwright::slow_noise_test {
@@ -40,23 +40,8 @@ std::string record(const NoisyMachine& machine) {
   return text;
 }
 
-/// axis.json, record.csv and e.json.
 void write(const NoisyMachine& machine, DiagramFolder& folder) {
-  folder.with("axis.json",
-              R"({"loopwright": 1, "solver": {"method": "rk4", "step": 0.001, "stop": 10}, "blocks": {
- "u":     {"type": "Constant", "value": {"value": 0, "unit": "N"}},
- "drive": {"type": "Gain", "gain": 1, "in": {"u": "u.y"}},
- "vis":   {"type": "ViscousFriction", "damping": {"value": 7, "unit": "N*s/m"}, "in": {"velocity": "m.velocity"}},
- "net":   {"type": "Sum", "signs": "+-", "in": {"terms": ["drive.y", "vis.force"]}},
- "m":     {"type": "Mass", "mass": {"value": 0.5, "unit": "kg"}, "in": {"force": "net.sum"}}}})");
-  folder.with("record.csv", record(machine));
-  folder.with(
-      "e.json",
-      fmt::format(
-          R"({{"loopwright": 1, "data": "record.csv", "time": "t", "drive": {{"drive.u": {{"column": "u"}}}},
- "compare": {{"m.position": {{"column": "x", "resolution": "{} m"}}}},
- "roles": {{"position": "m.position", "velocity": "m.velocity", "force": "net.sum", "input": "drive.u"}}}})",
-          machine.count));
+  write_plain_axis(folder, {.csv = record(machine), .count = machine.count});
 }
 
 TEST(SlowNoise, ThatIsForgottenWithinAFewSamplesIsNoise) {

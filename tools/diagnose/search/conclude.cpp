@@ -179,13 +179,10 @@ void add_blurred_shapes(const Trials& trials, Conclusion& result, const std::vec
   const std::vector<Member>& members = result.estimate.members;
   for (size_t m = 0; m < members.size(); ++m) {
     if (!is_blurred(trials, members[m])) continue;
-    for (const Candidate& other : candidates) {
-      if (!is_late_input(other) || &other == members[m].candidate) continue;
-      if (std::ranges::find(members, &other, &Member::candidate) == members.end())
-        add_if_new(result.substitutes[m], &other);
-      else
-        result.other_sets.push_back({{&other, members[m].candidate}, {members[m].candidate}, 0});
-    }
+    add_other_late_inputs(result.substitutes[m], members, candidates);
+    for (const Member& other : members)
+      if (is_late_member(other) && other.candidate != members[m].candidate)
+        result.other_sets.push_back({{other.candidate, members[m].candidate}, {members[m].candidate}, 0});
   }
 }
 
