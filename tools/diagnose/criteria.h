@@ -9,8 +9,7 @@ namespace loopwright::diagnosis::criteria {
 
 // Rows that count.
 
-/// [s] After the start of a record, or the correction below if that takes longer: the predictor begins with a
-/// guessed velocity.
+/// [s] After the start of a record, or the correction below if it takes longer: the first velocity is guessed.
 constexpr double settling_s = 0.1;
 /// [time constants of the predictor's motion] After a reversal, or an impact. Dry friction changes its sign
 /// within a sample or two of it; after five time constants a hundredth of that error is left.
@@ -53,8 +52,9 @@ constexpr double most_hidden_at_turns = 0.3;
 constexpr int plenty_of_reversals = 20;
 /// [gain of a late input] By which the other shape may be behind where only a velocity is measured.
 constexpr double share_of_controller = 0.15;
-/// [rows that stand for several] A delay or a lag of fewer may be the other one.
-constexpr double rows_that_blur = 20;
+/// [rows that stand for several] A delay or a lag of fewer may be the other one; below the second and the
+/// noise, a controller's answer within a row: it looks like 0.2 to 1.1 of one.
+constexpr double rows_that_blur = 20, rows_of_an_answer = 1.5;
 
 // Steps.
 /// [poles of a sample] Sizes after a whole step and after two halves that differ by less: it is short enough.

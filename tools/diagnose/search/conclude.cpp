@@ -9,6 +9,7 @@
 #include "tools/diagnose/search/gaps.h"
 #include "tools/diagnose/search/law_swaps.h"
 #include "tools/diagnose/search/laws_of_one_variable.h"
+#include "tools/diagnose/search/merged_rows.h"
 #include "tools/diagnose/search/noisy_input.h"
 #include "tools/diagnose/search/one_direction.h"
 #include "tools/diagnose/search/prune.h"
@@ -114,7 +115,8 @@ std::vector<double> sizes_of_members(const Trials& trials, const Conclusion& res
   for (size_t m = 0; m < result.weights.size(); ++m)
     sizes.push_back(spoils_balance(trials, result.estimate, m, result.weights[m]) ||
                             is_feigned_by_noise(trials, result.estimate.members, m) ||
-                            is_feigned_by_drift(trials, result.estimate.members, result.estimate.noise, m)
+                            is_feigned_by_drift(trials, result.estimate.members, result.estimate.noise, m) ||
+                            is_feigned_within_rows(trials, result.estimate, m, result.weights[m])
                         ? 0
                         : material(trials, result.estimate, result.weights[m]));
   return sizes;

@@ -67,7 +67,7 @@ void leave_out_idle_second_terms(std::vector<SiteHypothesis>& list, double least
 /// A hypothesis with an error of each sensor; those that come near what was found.
 std::vector<SiteHypothesis> near_with_error_of_sensor(SiteFitter& fitter, const SiteHypothesis& found,
                                                       const SiteHypothesis& at) {
-  constexpr int first_steps = 4, steps_beside_noise_found = 2;
+  constexpr int steps_with_more_noise = 4, steps_beside_noise_found = 2;
   std::vector<SiteHypothesis> list;
   SiteHypothesis bare = at;
   bare.noise = found.noise;  // with which an error that explains as much shows it
@@ -79,7 +79,7 @@ std::vector<SiteHypothesis> near_with_error_of_sensor(SiteFitter& fitter, const 
     if (fitter.is_interrupted() || fitter.model().work().is_spent(criteria::work_with_rivals)) break;
     SiteHypothesis with = at;
     with.terms.insert(with.terms.end(), error.begin(), error.end());
-    fitter.refine(with, first_steps);  // with more noise no error is too large to begin with
+    fitter.refine(with, steps_with_more_noise);  // with more noise no error is too large to begin with
     with.noise = found.noise;
     fitter.refine(with, steps_beside_noise_found);
     if (with.scaled_objective < found.scaled_objective + most_behind) list.push_back(std::move(with));

@@ -10,6 +10,7 @@
 #include "tools/diagnose/search/jumps.h"
 #include "tools/diagnose/search/law_swaps.h"
 #include "tools/diagnose/search/laws_of_one_variable.h"
+#include "tools/diagnose/search/merged_rows.h"
 #include "tools/diagnose/search/names.h"
 #include "tools/diagnose/search/other_starts.h"
 #include "tools/diagnose/search/prune.h"
@@ -199,6 +200,10 @@ bool Search::adds_material(Estimate& trial) {
     if (member.candidate->acts == Acts::input && is_at_limit(member)) {
       trail_.push_back("at the end of its range, where it stands for something else: " +
                        member.candidate->name);
+      return false;
+    }
+    if (is_feigned_within_rows(trials_, trial, m, w)) {
+      trail_.push_back("an answer to noise within a row that stands for several: " + member.candidate->name);
       return false;
     }
     const bool spoils = spoils_balance(trials_, trial, m, w);

@@ -4,17 +4,12 @@
 #include <cmath>
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/drifting_position.h"
+#include "tools/diagnose/search/merged_rows.h"
 #include "tools/diagnose/search/noisy_input.h"
 #include "tools/diagnose/search/remaining_force.h"
 #include "tools/diagnose/search/weight.h"
 
 namespace loopwright::diagnosis {
-
-bool is_blurred(const Trials& trials, const Member& member) {
-  const AxisRecord& record = trials.list.front().model->record();
-  return record.is_thinned && is_late_input(*member.candidate) &&
-         member.nonlinear[0] <= criteria::rows_that_blur * record.sample_time;
-}
 
 namespace {
 

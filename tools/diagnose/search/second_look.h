@@ -12,10 +12,6 @@ struct SmallEffect {
   double force_rms = 0;
 };
 
-/// Whether it is a delay or a lag of a few rows that were put together of several each: see
-/// criteria::rows_that_blur.
-bool is_blurred(const Trials& trials, const Member& member);
-
 struct SecondLook {
   std::optional<Estimate> better;  ///< with a further member that is material
   std::vector<std::string> trail;

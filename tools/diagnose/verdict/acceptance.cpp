@@ -6,6 +6,7 @@
 #include <utility>
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/doubt.h"
+#include "tools/diagnose/search/merged_rows.h"
 #include "tools/diagnose/search/rivals.h"
 #include "tools/diagnose/search/wandering_sensor.h"
 #include "tools/diagnose/search/whiteness.h"

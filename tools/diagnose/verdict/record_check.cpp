@@ -166,6 +166,17 @@ std::vector<RecordFinding> faults_of_sensors(const Trials& trials, const Trial& 
   return findings;
 }
 
+/// Rows that were put together hide what happens within them.
+RecordFinding rows_are_merged(const AxisRecord& record) {
+  const double shortest_s = criteria::rows_of_an_answer * record.sample_time;
+  return {fmt::format("{} rows of the record became one of {}", record.rows_in_one,
+                      shown(record.sample_time, "s")),
+          fmt::format("a command that comes late by less than {} is not told, unless its force is above the "
+                      "noise: diagnose a part of at most {:.0f} rows",
+                      shown(shortest_s, "s"), criteria::most_rows),
+          false, false};
+}
+
 }  // namespace
 
 std::vector<RecordFinding> look_at_records(const Trials& trials,
@@ -175,6 +186,8 @@ std::vector<RecordFinding> look_at_records(const Trials& trials,
     findings.push_back(readings_are_false(count, "what their neighbours say was taken instead"));
   if (trials.list.front().model->record().leaps != InputLeaps::felt)
     findings.push_back(inputs_are_not_felt(input_leaps(trials)));
+  if (const AxisRecord& first = trials.list.front().model->record(); first.rows_in_one > 1)
+    findings.push_back(rows_are_merged(first));
   for (const Trial& trial : trials.list)
     std::ranges::move(faults_of_sensors(trials, trial), std::back_inserter(findings));
   const auto is_driven = [](const Trial& trial) {
