@@ -9,7 +9,8 @@
 namespace loopwright {
 namespace {
 
-constexpr double most_rows = 1e12;  // more than any file holds
+constexpr double most_rows = 1e12;       // more than any file holds
+constexpr double most_rows_late = 1000;  // more than any pipeline holds
 
 ColumnError error_at(const Value& at, const Reader& reader) {
   return [&at, &reader](std::string message) -> Problem& { return reader.error(at, std::move(message)); };
@@ -22,8 +23,9 @@ std::optional<double> time_of(const Value::Member& member, const Reader& reader)
   return stated ? in_unit(*stated, *parse_unit("s"), what, reader) : std::nullopt;
 }
 
-size_t count_of(const Value& object, std::string_view key, double otherwise, const Reader& reader) {
-  const double count = reader.optional_number(object, key, otherwise, otherwise, most_rows);
+size_t count_of(const Value& object, std::string_view key, double otherwise, const Reader& reader,
+                double most = most_rows) {
+  const double count = reader.optional_number(object, key, otherwise, otherwise, most);
   if (count == std::floor(count)) return whole_count(count);
   reader.error(*object.find(key), "rows are counted in whole numbers");
   return whole_count(otherwise);
@@ -31,12 +33,20 @@ size_t count_of(const Value& object, std::string_view key, double otherwise, con
 
 }  // namespace
 
+std::vector<double> moved_earlier(const std::vector<double>& values, size_t rows) {
+  std::vector<double> moved(values.size());
+  for (size_t k = 0; k < values.size(); ++k) moved[k] = values[std::min(k + rows, values.size() - 1)];
+  return moved;
+}
+
 FileShape Excerpt::column_shape() {
   using namespace shapes;
   return object({optional("column", text(), "Column of the data; that of this name when left out"),
                  optional("unit", text(), "Unit of the new numbers"),
                  optional("scale", number(), "value = scale * number in the file + offset"),
-                 optional("offset", stated(), "In the unit of the new numbers")});
+                 optional("offset", stated(), "In the unit of the new numbers"),
+                 optional("rows_late", whole(0, most_rows_late),
+                          "The log wrote each value so many rows after the row to which it belongs")});
 }
 
 FileShape Excerpt::rows_shape() {
@@ -72,6 +82,7 @@ std::optional<Excerpt::NewColumn> Excerpt::read_column(const Value::Member& entr
     reader.error(*entry.value.find("scale"), "a scale of 0 leaves nothing of the column");
   if (const Value::Member* offset = entry.value.find("offset"))
     column.offset = stated_number(offset->value, "\"offset\"", reader);
+  column.rows_late = count_of(entry.value, "rows_late", 0, reader, most_rows_late);
   column.is_computed = entry.value.find("scale") || entry.value.find("offset");
   return column;
 }
@@ -91,6 +102,7 @@ void Excerpt::read_rows(const Value::Member& excerpt, const Reader& reader) {
 
 void Excerpt::apply(Recording& recording, const std::string& time, const Reader& reader) const {
   add_columns(recording, reader);
+  leave_out_rows_without_number(recording, reader);
   if (has_rows_) keep_rows(recording, time, reader);
 }
 
@@ -98,6 +110,7 @@ std::optional<Column> Excerpt::computed(const NewColumn& wanted, const Column& f
   const ColumnError error = error_at(wanted.at, reader);
   Column column = from;
   column.name = wanted.name;
+  if (wanted.rows_late > 0) column.values = moved_earlier(column.values, wanted.rows_late);
   if (!wanted.is_computed) {
     if (!unit_of(from, wanted.unit, error)) return {};
     if (from.unit.empty()) column.unit = wanted.unit;
@@ -140,6 +153,17 @@ void Excerpt::add_columns(Recording& recording, const Reader& reader) const {
     else
       *same = std::move(column);
   }
+}
+
+void Excerpt::leave_out_rows_without_number(Recording& recording, const Reader& reader) const {
+  const auto latest = std::ranges::max_element(columns_, {}, &NewColumn::rows_late);
+  if (latest == columns_.end() || latest->rows_late == 0) return;
+  if (recording.rows() < latest->rows_late + 2) {
+    reader.error(latest->at, fmt::format("\"{}\" is {} rows late in a recording of {} rows", latest->name,
+                                         latest->rows_late, recording.rows()));
+    return;
+  }
+  for (Column& column : recording.columns) column.values.resize(column.values.size() - latest->rows_late);
 }
 
 void Excerpt::keep_rows(Recording& recording, const std::string& time, const Reader& reader) const {

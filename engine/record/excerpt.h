@@ -11,11 +11,13 @@
 
 namespace loopwright {
 
-///     "columns": {"x": {"column": "data[1]", "scale": -2e-6, "offset": "3 mm", "unit": "m"}},
-///     "excerpt": {"skip": 100, "from": "2 s", "to": 10, "decimate": 4}
+///     "columns": {"x": {"column": "data[1]", "scale": -2e-6, "offset": "3 mm", "unit": "m", "rows_late":
+///     1}}, "excerpt": {"skip": 100, "from": "2 s", "to": 10, "decimate": 4}
 ///
-/// value = scale · number in the file + offset, in the unit; a column gets its new name. Of the rows, the
-/// first ones are left out, then those outside of the times, and of the rest every n-th is kept.
+/// value = scale · number in the file + offset, in the unit; a column gets its new name. One that was logged
+/// some rows late gets the number of so many rows after; the last rows, to which no number belongs then, are
+/// left out. Of the others the first ones are left out, then those outside of the times, and of the rest
+/// every n-th is kept.
 class Excerpt {
  public:
   /// What stands at a name in "columns", and at "excerpt".
@@ -34,6 +36,7 @@ class Excerpt {
     std::string name, column, unit;
     double scale = 1;
     std::optional<StatedNumber> offset;
+    size_t rows_late = 0;
     bool is_computed = false;  ///< states a scale or an offset
     Place place;
     Value at;
@@ -42,6 +45,7 @@ class Excerpt {
   void read_rows(const Value::Member& excerpt, const Reader& reader);
   static std::optional<Column> computed(const NewColumn& wanted, const Column& from, const Reader& reader);
   void add_columns(Recording& recording, const Reader& reader) const;
+  void leave_out_rows_without_number(Recording& recording, const Reader& reader) const;
   void keep_rows(Recording& recording, const std::string& time, const Reader& reader) const;
 
   std::vector<NewColumn> columns_;
@@ -50,5 +54,8 @@ class Excerpt {
   size_t skip_ = 0, decimate_ = 1;
   Value rows_at_;
 };
+
+/// Each row with the value of so many rows after it; the last value stays.
+std::vector<double> moved_earlier(const std::vector<double>& values, size_t rows);
 
 }  // namespace loopwright

@@ -10,6 +10,7 @@
 #include "tools/diagnose/search/conclude.h"
 #include "tools/diagnose/search/doubt.h"
 #include "tools/diagnose/search/friction_at_reversals.h"
+#include "tools/diagnose/search/late_log.h"
 #include "tools/diagnose/search/leaps_of_input.h"
 #include "tools/diagnose/search/noisy_input.h"
 #include "tools/diagnose/search/remaining_force.h"
@@ -219,20 +220,31 @@ void tell_limits(const Trials& trials, const Acceptance& accepted, const RecordS
   if (accepted.has_few_simulations()) result.findings.push_back(too_few_simulations(accepted.runs.back()));
 }
 
-/// `input_noise`: see AxisModel.
+/// What else the input has that the machine does not feel, beside what was found.
+std::optional<InputCorrection> other_correction(Trials& trials, Conclusion& conclusion,
+                                                const Catalogue& catalogue, InputCorrection correction) {
+  if (const auto rows = rows_logged_late(trials, conclusion.estimate, conclusion.trail)) {
+    correction.rows_late = *rows;
+    return correction;
+  }
+  return noise_instead_of_late_input(trials, conclusion.estimate, catalogue.candidates.size());
+}
+
+/// `correction`: see AxisModel. A record that asks for another one is read again with it.
 Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std::string>& experiments,
-                              const DiagnoseOptions& options,
-                              const std::optional<InputNoise>& input_noise = {}) {
+                              const DiagnoseOptions& options, const InputCorrection& correction = {}) {
   const std::function<void(const char*, double)> progress = [&](const char* stage, double done) {
     if (options.progress) options.progress(stage, done);
   };
   progress("reading the records", 0);
   Motion motion;
-  Trials trials = prepare(diagram, experiments, options.load, motion, input_noise);
+  Trials trials = prepare(diagram, experiments, options.load, motion, correction);
+  const bool is_as_recorded =
+      correction.rows == 0 && correction.leaps == InputLeaps::felt && correction.rows_late == 0;
   if (const auto leaps =
-          input_noise ? std::nullopt : unfelt_leaps(diagram, experiments, options.load, trials))
-    return diagnose_to_the_end(diagram, experiments, options, InputNoise{.leaps = *leaps});
-  const bool is_smoothed = input_noise && input_noise->rows > 0;
+          is_as_recorded ? unfelt_leaps(diagram, experiments, options.load, trials) : std::nullopt)
+    return diagnose_to_the_end(diagram, experiments, options, InputCorrection{.leaps = *leaps});
+  const bool is_smoothed = correction.rows > 0;
   trials.interrupt = options.interrupt;
   const double most_work = options.most_work.value_or(criteria::most_work);
   *trials.work = Work(most_work);
@@ -265,10 +277,9 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
              catalogue.candidates.size(),
              [&](const Conclusion& c, size_t member) { return inquiry.without(c, member); });
   if (is_smoothed)
-    result.findings.push_back(input_is_noisy(trials, *input_noise));
-  else if (const auto noise =
-               noise_instead_of_late_input(trials, accepted.conclusion.estimate, catalogue.candidates.size()))
-    return diagnose_to_the_end(diagram, experiments, options, noise);
+    result.findings.push_back(input_is_noisy(trials, correction));
+  else if (const auto better = other_correction(trials, accepted.conclusion, catalogue, correction))
+    return diagnose_to_the_end(diagram, experiments, options, *better);
   if (trials.work->was_short()) result.findings.push_back(ended_at_limit(most_work));
   const Conclusion& conclusion = accepted.conclusion;
   const Staircase& staircase = accepted.staircase;

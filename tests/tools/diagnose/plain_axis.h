@@ -10,6 +10,7 @@ struct PlainRecord {
   double count = 1e-9;  ///< [m] of the position
   double solver_step = 1e-3;
   double held_out = 0;  ///< fraction; 0: as the diagnosis chooses
+  std::string more{};   ///< of the experiment: R"(, "columns": {…})"
 };
 
 /// axis.json, record.csv and e.json.
@@ -31,8 +32,8 @@ inline void write_plain_axis(DiagramFolder& folder, const PlainRecord& record) {
       fmt::format(
           R"({{"loopwright": 1, "data": "record.csv", "time": "t", "drive": {{"drive.u": {{"column": "u"}}}},
  "compare": {{"m.position": {{"column": "x", "resolution": "{} m"}}}},{}
- "roles": {{"position": "m.position", "velocity": "m.velocity", "force": "net.sum", "input": "drive.u"}}}})",
-          record.count, hold_out));
+ "roles": {{"position": "m.position", "velocity": "m.velocity", "force": "net.sum", "input": "drive.u"}}{}}})",
+          record.count, hold_out, record.more));
 }
 
 }  // namespace loopwright

@@ -135,6 +135,22 @@ TEST_F(Experiments, ASlowerSignalIsComparedAtItsOwnRows) {
   }
 }
 
+/// 1 N for two seconds; each command was written a row late.
+TEST_F(Experiments, AColumnThatWasLoggedLateIsReadEarlier) {
+  folder.with("data.csv", "t,F,x_mm\n0,0,0\n1,1,250\n2,1,1000\n3,0,2000\n4,0,3000\n");
+  folder.experiment();
+  EXPECT_GT(folder.compared().signals[0].rmse, 0.1);
+  const std::string position = R"("stage.position": {"column": "x_mm", "unit": "mm"})";
+  folder.experiment(drive, position, R"(, "columns": {"F": {"rows_late": 1}})");
+  const Comparison c = folder.compared();
+  EXPECT_EQ(c.time, (std::vector<double>{0, 1, 2, 3})) << "no command belongs to the last row";
+  EXPECT_NEAR(c.signals[0].rmse, 0, 1e-9);
+  folder.experiment(drive, position, R"(, "columns": {"F": {"rows_late": 4}})");
+  expect_refusal({R"("F" is 4 rows late in a recording of 5 rows)"});
+  folder.experiment(drive, position, R"(, "columns": {"F": {"rows_late": 0.5}})");
+  expect_refusal({"rows are counted in whole numbers"});
+}
+
 /// What drives has a value at all times: nobody knows it between these rows.
 TEST_F(Experiments, ASlowerDriveIsRefusedWithTheRowsThatHaveIt) {
   std::string text = "t,F,x_mm\n";

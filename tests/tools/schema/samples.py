@@ -28,7 +28,7 @@ EXPERIMENTS = [
      "roles": {"position": "a.x", "velocity": "a.v", "acceleration": "a.a", "force": "a.f", "input": "a.u"},
      "set": {"a.mass": {"value": 1, "unit": "kg"}, "load": "=1/2", "gains.1": 3, "way": "5 mm"},
      "hold_out": {"fraction": 0.25}, "rows": "samples",
-     "columns": {"z": {"column": "x", "unit": "m", "scale": 2, "offset": "3 mm"}},
+     "columns": {"z": {"column": "x", "unit": "m", "scale": 2, "offset": "3 mm", "rows_late": 1}},
      "excerpt": {"from": "0.5 s", "to": 3, "skip": 1, "decimate": 2}},
     {**HEAD, "data": "motion.csv", "compare": {"a.x": {"column": "x"}}, "sites": ["a.f", "a.g"]},
     {**HEAD, "data": "map.csv", "compare": {"a.x": {"column": "x"}}, "drive": {"a.u": {"column": "u"}}, "rows": "balances",

@@ -93,7 +93,7 @@ double step_by_samples(Plan& plan, const AxisRecord& record, int steps) {
 }
 
 AxisModel::AxisModel(const std::string& path, const std::string& experiment_path, const LoadOptions& options,
-                     const std::optional<InputNoise>& noise, size_t rows_in_one) {
+                     const InputCorrection& correction, size_t rows_in_one) {
   Problems problems;
   const auto experiment = load_experiment(experiment_path, problems);
   const auto whole =
@@ -122,9 +122,9 @@ AxisModel::AxisModel(const std::string& path, const std::string& experiment_path
   for (const Plan* known : {static_cast<const Plan*>(changed.get()), whole_plan.get()})
     if (const Number number = number_of(*known, force_port); number >= 0 && !force_unit)
       force_unit = known->unit_of(number);
-  record_ = read_axis_record(cut, *changed, problems, rows_in_one, noise ? noise->leaps : InputLeaps::felt);
+  record_ = read_axis_record(cut, *changed, problems, rows_in_one, correction);
   if (problems.has_errors()) throw InputError(std::move(problems));
-  if (noise) take_away(record_, *noise);
+  take_noise_away(record_, correction);
   input_ = number_of(*changed, role(cut, "input").first);
   injected_ = number_of(*changed, parent + injected_force + ".y");
   force_ = number_of(*changed, force_port);

@@ -73,7 +73,7 @@ class AxisModel {
   /// The diagram at `path`, driven by the experiment's input alone, without noise that the machine does not
   /// feel. `rows_in_one`: see read_axis_record(). Throws InputError with every problem.
   AxisModel(const std::string& path, const std::string& experiment, const LoadOptions& options,
-            const std::optional<InputNoise>& noise = {}, size_t rows_in_one = 0);
+            const InputCorrection& correction = {}, size_t rows_in_one = 0);
   ~AxisModel();
   AxisModel(AxisModel&&) noexcept;
 

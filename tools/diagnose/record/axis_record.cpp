@@ -1,5 +1,6 @@
 #include "tools/diagnose/record/axis_record.h"
 #include "models/real/whole.h"
+#include "engine/record/excerpt.h"
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
@@ -209,7 +210,7 @@ std::vector<double> mean_over_rows(const std::vector<double>& values, double row
   return means;
 }
 
-void take_away(AxisRecord& record, const InputNoise& noise) {
+void take_noise_away(AxisRecord& record, const InputCorrection& noise) {
   if (noise.rows == 0) return;
   for (std::vector<double>* values : {&record.input, &record.input_slope}) {
     const std::vector<double> mean = mean_over_rows(*values, noise.rows);
@@ -278,7 +279,7 @@ std::vector<double> places_of_rows(const AxisRecord& record) {
 }
 
 AxisRecord read_axis_record(const Experiment& experiment, const Plan& plan, Problems& problems,
-                            size_t rows_in_one, InputLeaps leaps) {
+                            size_t rows_in_one, const InputCorrection& correction) {
   AxisRecord record;
   record.title = experiment.title, record.path = experiment.path, record.place = experiment.place;
   const std::vector<double>& time = experiment.data.columns.front().values;
@@ -298,8 +299,10 @@ AxisRecord read_axis_record(const Experiment& experiment, const Plan& plan, Prob
   const loopwright::Column& input = *experiment.data.find(drive.port);
   record.duration = grid.duration();
   record.is_map = experiment.is_map;  // its rows do not follow each other
-  OverSamples over = grid.driving(without_leaps(time, input.values, leaps, record),
-                                  record.is_map ? BetweenRows::hold : drive.between_rows);
+  record.rows_late = correction.rows_late;
+  OverSamples over = grid.driving(
+      moved_earlier(without_leaps(time, input.values, correction.leaps, record), correction.rows_late),
+      record.is_map ? BetweenRows::hold : drive.between_rows);
   record.input = std::move(over.mean), record.input_slope = std::move(over.change);
   record.input_unit = input.unit;
   for (const char* role : {"position", "velocity"}) {

@@ -42,6 +42,7 @@ struct AxisRecord {
   std::vector<char> false_rows;
   size_t false_readings = 0;  ///< of all sensors
   InputLeaps leaps = InputLeaps::felt;
+  size_t rows_late = 0;        ///< of the input, which is where it belongs now
   size_t input_leaps = 0;      ///< values of the input that are out of line, or were and were taken away
   size_t leaps_by_a_turn = 0;  ///< rows in which the angle begins anew, as recorded
   bool is_thinned = false;     ///< several recorded rows are one
@@ -71,23 +72,23 @@ std::vector<double> places_of_rows(const AxisRecord& record);
 /// only to the model.
 MeasuredMotion measured_motion(const AxisRecord& record);
 
-/// Noise of a measured input that the machine does not feel: a share of what the input is above its mean over
-/// some rows on both sides.
-struct InputNoise {
-  double rows = 0, share = 0;
+/// What a recorded input has that the machine does not feel.
+struct InputCorrection {
+  double rows = 0, share = 0;  ///< noise: a share of what it is above its mean over some rows on both sides
   InputLeaps leaps = InputLeaps::felt;
+  size_t rows_late = 0;  ///< each value belongs to so many rows before; not where rows become one
 };
 /// Means of each row with those about it, or with those after it alone, with weights that fall to 37 % over
 /// `rows`. About a row they are neither delayed nor advanced.
 enum class RowsOfMean { about, after };
 std::vector<double> mean_over_rows(const std::vector<double>& values, double rows,
                                    RowsOfMean side = RowsOfMean::about);
-void take_away(AxisRecord& record, const InputNoise& noise);
+void take_noise_away(AxisRecord& record, const InputCorrection& noise);
 
 /// The columns of the roles, on a uniform grid: see EvenGrid. Problems: missing roles or columns, units that
 /// differ from the diagram's. `rows_in_one` become one; 0: as many as its length asks for.
 AxisRecord read_axis_record(const Experiment& experiment, const Plan& plan, Problems& problems,
-                            size_t rows_in_one = 0, InputLeaps leaps = InputLeaps::felt);
+                            size_t rows_in_one = 0, const InputCorrection& correction = {});
 
 /// The experiment with the axis cut open at its input: only the measured input drives the diagram.
 Experiment cut_open(const Experiment& experiment, const Plan& plan, Problems& problems);

@@ -60,7 +60,7 @@ std::optional<InputLeaps> unfelt_leaps(const std::string& diagram,
   for (const InputLeaps leaps : unfelt) {
     if (input_leaps(trials) == 0) break;
     Motion motion;
-    Trials without = prepare(diagram, experiments, options, motion, InputNoise{.leaps = leaps});
+    Trials without = prepare(diagram, experiments, options, motion, InputCorrection{.leaps = leaps});
     if (input_leaps(without) == 0) continue;
     const double gain = misfit(trials, without) - misfit(without, trials);
     if (!(gain > most)) continue;

@@ -15,6 +15,11 @@ struct Estimate {
   double against_at_rest = 0;  ///< see against_at_rest()
   Eigen::MatrixXd covariance;  ///< of the free parameters, times max(1, mean_square)
   bool is_valid = false;
+
+  /// Twice the negative log-likelihood, without the price of the parameters.
+  double misfit() const {
+    return is_valid ? profile + against_at_rest : std::numeric_limits<double>::infinity();
+  }
 };
 
 /// Gauss-Newton on the prediction errors with the given noise, starting from the given members. Each

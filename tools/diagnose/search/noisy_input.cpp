@@ -100,14 +100,9 @@ std::optional<Replacements> replacements_of_late_input(Trials& trials, const Est
   return by;
 }
 
-/// Twice the negative log-likelihood, without the price of the parameters.
-double misfit(const Estimate& e) {
-  return e.is_valid ? e.profile + e.against_at_rest : std::numeric_limits<double>::infinity();
-}
-
 }  // namespace
 
-std::optional<InputNoise> noise_instead_of_late_input(Trials& trials, const Estimate& found,
+std::optional<InputCorrection> noise_instead_of_late_input(Trials& trials, const Estimate& found,
                                                       size_t catalogue) {
   const auto by = replacements_of_late_input(trials, found, catalogue);
   if (!by) return {};
@@ -118,7 +113,8 @@ std::optional<InputNoise> noise_instead_of_late_input(Trials& trials, const Esti
   if (!gains_early && loss(by->about) >= of_late) return {};
   const Member& smoothing = by->about.members.back();
   if (smoothing.linear[0] < criteria::least_unfelt_share) return {};
-  return InputNoise{smoothing.nonlinear[0], smoothing.linear[0], trials.list.front().model->record().leaps};
+  const AxisRecord& record = trials.list.front().model->record();
+  return InputCorrection{smoothing.nonlinear[0], smoothing.linear[0], record.leaps, record.rows_late};
 }
 
 bool measure_position(const Trials& trials) {
@@ -129,9 +125,9 @@ bool measure_position(const Trials& trials) {
 bool smoothing_gains(Trials& trials, const Estimate& found, size_t catalogue) {
   const auto by = replacements_of_late_input(trials, found, catalogue);
   if (!by) return false;
-  const double least = criteria::least_gain_of_early_input * (misfit(by->nothing) - misfit(found));
+  const double least = criteria::least_gain_of_early_input * (by->nothing.misfit() - found.misfit());
   return std::ranges::any_of(std::array{&by->about, &by->after}, [&](const Estimate* smoothed) {
-    return misfit(by->nothing) - misfit(*smoothed) > least;
+    return by->nothing.misfit() - smoothed->misfit() > least;
   });
 }
 

@@ -243,13 +243,13 @@ void take_one_rate(Trials& trials, const std::function<std::unique_ptr<AxisModel
 }  // namespace
 
 Trials prepare(const std::string& diagram, const std::vector<std::string>& experiments,
-               const LoadOptions& options, Motion& motion, const std::optional<InputNoise>& noise) {
+               const LoadOptions& options, Motion& motion, const InputCorrection& correction) {
   Trials trials;
   trials.remembered = std::make_shared<RememberedRuns>();
   std::vector<double> speed;
   const auto read = [&](size_t number, size_t rows_in_one) {
     try {
-      return std::make_unique<AxisModel>(diagram, experiments[number], options, noise, rows_in_one);
+      return std::make_unique<AxisModel>(diagram, experiments[number], options, correction, rows_in_one);
     } catch (InputError& error) {
       explain_failure(diagram, experiments, options, std::move(error.problems));
     }

@@ -6,8 +6,8 @@ namespace loopwright::diagnosis {
 
 /// Reads the experiments, determines which rows count, and estimates the noise with a random walk in place of
 /// every missing force. `motion` is the estimate of that first prediction: unbiased whatever is missing.
-/// `noise`: of the inputs, see AxisModel.
+/// `correction`: of the inputs, see AxisModel.
 Trials prepare(const std::string& diagram, const std::vector<std::string>& experiments,
-               const LoadOptions& options, Motion& motion, const std::optional<InputNoise>& noise = {});
+               const LoadOptions& options, Motion& motion, const InputCorrection& correction = {});
 
 }  // namespace loopwright::diagnosis

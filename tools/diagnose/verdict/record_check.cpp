@@ -57,6 +57,17 @@ RecordFinding inputs_are_not_felt(size_t count) {
           "what the neighbours say was taken instead"};
 }
 
+RecordFinding input_is_logged_late(size_t rows) {
+  const char* const plural = rows == 1 ? "" : "s";
+  return {
+      fmt::format("the machine answers to its recorded input {} row{} before the record has it: the log "
+                  "wrote each value {} row{} late",
+                  rows, plural, rows, plural),
+      fmt::format("it was read {} row{} earlier for this diagnosis: state \"rows_late\": {} of its column "
+                  "in \"columns\" of the experiment, so that compare and fit do too",
+                  rows, plural, rows)};
+}
+
 RecordFinding angle_leaps(std::string_view angle, size_t count) {
   return {fmt::format("the measured {} leaps by a turn in {} row{}", angle, count, count == 1 ? "" : "s"),
           "the sensor begins anew at each turn: add up its turns in the column", true};
@@ -84,7 +95,7 @@ RecordFinding ended_at_limit(double most_work) {
       "less, or state in the diagram what is known"};
 }
 
-RecordFinding input_is_noisy(const Trials& trials, const InputNoise& noise) {
+RecordFinding input_is_noisy(const Trials& trials, const InputCorrection& noise) {
   const double around_s = noise.rows * trials.list.front().model->record().sample_time;
   return {fmt::format("the recorded input has noise that the machine does not feel: without {:.0f} % of its "
                       "changes within {:.3g} ms it explains the motion better than with any delay",
@@ -186,8 +197,9 @@ std::vector<RecordFinding> look_at_records(const Trials& trials,
     findings.push_back(readings_are_false(count, "what their neighbours say was taken instead"));
   if (trials.list.front().model->record().leaps != InputLeaps::felt)
     findings.push_back(inputs_are_not_felt(input_leaps(trials)));
-  if (const AxisRecord& first = trials.list.front().model->record(); first.rows_in_one > 1)
-    findings.push_back(rows_are_merged(first));
+  const AxisRecord& first = trials.list.front().model->record();
+  if (first.rows_late > 0) findings.push_back(input_is_logged_late(first.rows_late));
+  if (first.rows_in_one > 1) findings.push_back(rows_are_merged(first));
   for (const Trial& trial : trials.list)
     std::ranges::move(faults_of_sensors(trials, trial), std::back_inserter(findings));
   const auto is_driven = [](const Trial& trial) {

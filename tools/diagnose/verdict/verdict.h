@@ -30,8 +30,9 @@ RecordFinding noise_is_loud(double share_of_drive, double shortest_pitch, const 
 RecordFinding too_few_simulations(const FreeRun& run);
 /// Values of recorded inputs that were taken away because the machine does not feel them.
 RecordFinding inputs_are_not_felt(size_t count);
+RecordFinding input_is_logged_late(size_t rows);
 /// Noise was taken away from the recorded input: see noise_instead_of_late_input().
-RecordFinding input_is_noisy(const Trials& trials, const InputNoise& noise);
+RecordFinding input_is_noisy(const Trials& trials, const InputCorrection& noise);
 
 /// Verdict, remainder and its variables, the latter along `motion`. `tight` is the noise of the search: with
 /// the final noise, the slow force has absorbed the remainder. Nothing is explained as long as the residual

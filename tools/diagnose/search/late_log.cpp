@@ -1,0 +1,66 @@
+#include "tools/diagnose/search/late_log.h"
+#include <fmt/format.h>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include "engine/record/excerpt.h"
+#include "tools/diagnose/criteria.h"
+
+namespace loopwright::diagnosis {
+namespace {
+
+/// Takes a share of the difference from the input some rows later.
+Candidate early_input(size_t rows) {
+  Candidate candidate;
+  candidate.name = "early_input", candidate.acts = Acts::input;
+  candidate.linear = {{"share", "1", 0, 2, false, {}}};
+  candidate.columns_at = [rows](const Path& path, const std::vector<std::vector<double>>& shapes) {
+    const std::vector<double> later = moved_earlier(path.input, rows);
+    std::vector<float> difference(later.size());
+    for (size_t k = 0; k < later.size(); ++k) difference[k] = float(path.input[k] - later[k]);
+    return std::vector<Columns>(shapes.size(), {Column(std::move(difference))});
+  };
+  return candidate;
+}
+
+/// One of each kind, for as long as the members that refer to it.
+const std::array<Candidate, 2>& early_inputs() {
+  static const std::array<Candidate, 2> inputs{early_input(1), early_input(2)};
+  return inputs;
+}
+
+bool may_be_late(const Trials& trials, const Estimate& found) {
+  return !trials.has_map() && std::ranges::none_of(found.members, is_late_member) &&
+         std::ranges::all_of(trials.list, [](const Trial& trial) {
+           const AxisRecord& record = trial.model->record();
+           return !record.is_thinned && record.rows_late == 0;
+         });
+}
+
+}  // namespace
+
+std::optional<size_t> rows_logged_late(Trials& trials, const Estimate& found,
+                                       std::vector<std::string>& trail) {
+  constexpr int iterations = 6;
+  if (!may_be_late(trials, found)) return {};
+  const auto fitted = [&](const std::vector<Member>& members) {
+    return with_own_noise(trials, fit_members(trials, members, found.noise, found.motion, iterations),
+                          iterations);
+  };
+  const double recorded = fitted(found.members).misfit();
+  double most = criteria::least_gain_of_other_input;
+  std::optional<size_t> late;
+  for (size_t i = 0; i < early_inputs().size(); ++i) {
+    std::vector<Member> members = found.members;
+    members.insert(members.begin(), Member{&early_inputs()[i], {1}, {}});
+    const Estimate trial = fitted(members);
+    const double gain = recorded - trial.misfit();
+    if (!(gain > most)) continue;
+    const double share = trial.members.front().linear.front();
+    trail.push_back(fmt::format("the input of {} rows later: share {:.2f}, gain {:.1f}", i + 1, share, gain));
+    if (std::abs(share - 1) < criteria::most_beside_a_row) late = i + 1, most = gain;
+  }
+  return late;
+}
+
+}  // namespace loopwright::diagnosis
