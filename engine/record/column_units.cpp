@@ -91,7 +91,7 @@ std::optional<Unit> unit_of(const Column& column, const std::string& stated, con
   }
   if (stated.empty() || column.unit.empty()) return unit;
   const auto own = parse_unit(stated);
-  if (own && is_same_unit(*own, *unit)) return unit;
+  if (own && is_same_unit(*own, *unit) && is_counted(text) == is_counted(stated)) return unit;
   auto& p = error(own ? fmt::format("the column \"{}\" has another unit in its file", column.name)
                       : fmt::format("the unit \"{}\" cannot be read", stated));
   p.expected = heading(column);

@@ -3,6 +3,7 @@
 #include "engine/unit/scaled_rate.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -76,6 +77,11 @@ void make_hertz_count_cycles(ut_system* system) {
   for (ut_unit* unit : {cycle, second, hertz}) ut_free(unit);
 }
 
+/// Of one increment, in addition to those that udunits2 knows.
+constexpr std::array<std::string_view, 7> counted_aliases = {"pulse",  "pulses",  "step", "steps",
+                                                             "sample", "samples", "LSB"};
+constexpr std::array<std::string_view, 2> known_to_the_database = {"count", "counts"};
+
 /// The unit database of udunits2, read once, with additional spellings of motion control.
 ut_system* unit_database() {
   static ut_system* const database = [] {
@@ -91,8 +97,7 @@ ut_system* unit_database() {
     make_hertz_count_cycles(system);
     alias("deg", "degree");
     alias("rev", "revolution");
-    for (const char* counted : {"pulse", "pulses", "step", "steps", "sample", "samples", "LSB"})
-      alias(counted, "1");
+    for (const std::string_view counted : counted_aliases) alias(std::string(counted).c_str(), "1");
     return system;
   }();
   return database;
@@ -272,6 +277,19 @@ Unit power(const Unit& a, double exponent) {
   for (size_t i = 0; i < result.exponents.size(); ++i)
     result.exponents[i] = exact_exponent(a.exponents[i] * exponent);
   return result;
+}
+
+bool is_counted(std::string_view text) {
+  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  for (auto at = text.begin(); at != text.end();) {
+    const auto first = std::find_if(at, text.end(), is_letter);
+    at = std::find_if_not(first, text.end(), is_letter);
+    const std::string_view word(first, at);
+    const auto is_it = [word](std::string_view counted) { return word == counted; };
+    if (std::ranges::any_of(counted_aliases, is_it) || std::ranges::any_of(known_to_the_database, is_it))
+      return true;
+  }
+  return false;
 }
 
 std::optional<Unit> parse_unit(std::string_view text) {

@@ -46,6 +46,10 @@ Unit power(const Unit& a, double exponent);
 /// nothing if it cannot be read.
 std::optional<Unit> parse_unit(std::string_view text);
 
+/// Whether it counts increments ("counts", "pulses/s", "LSB"): a plain number for the arithmetic, but no
+/// angle.
+bool is_counted(std::string_view text);
+
 /// A readable spelling: a named unit (N, V, Hz, rpm …) if one fits, otherwise a product of base units; "1" if
 /// dimensionless, "rad" for an angle.
 std::string to_string(const Unit& unit);

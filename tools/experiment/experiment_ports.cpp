@@ -42,10 +42,15 @@ std::optional<Number> find_port(const Plan& plan, const std::string& port,
   const auto of_port = plan.unit_of(numbers[0]), of_data = unit ? parse_unit(*unit) : std::nullopt;
   if (!of_port || !of_data) return numbers[0];
   const Conversion::Kind kind = conversion(*of_data, *of_port).kind;
-  if (kind == Conversion::Kind::none || kind == Conversion::Kind::turns) return numbers[0];
+  const bool is_count = of_port->radians() != 0 && is_counted(*unit);
+  if (!is_count && (kind == Conversion::Kind::none || kind == Conversion::Kind::turns)) return numbers[0];
   auto& p =
       problems.error(place, pointer, "", fmt::format("\"{}\" is in another unit than its column", port));
   p.expected = to_string(*of_port), p.found = *unit;
+  if (is_count)
+    p.hint =
+        "a count is no radian: state what one count is in \"columns\" of the experiment, {\"column\": …, "
+        "\"scale\": 7.67e-4, \"unit\": \"rad\"} for 8192 counts a turn";
   if (kind == Conversion::Kind::ambiguous)
     p.hint =
         "are these cycles (Hz), revolutions (rpm), radians (rad/s) or plain numbers (1/s)? give the column "

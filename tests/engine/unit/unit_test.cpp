@@ -43,6 +43,13 @@ TEST(ParseUnit, CountsPiecesAsOne) {
     EXPECT_EQ(unit(text), Unit{}) << text;
 }
 
+TEST(CountedUnit, IsToldByItsWords) {
+  for (const char* text : {"counts", "count", "pulses/s", "LSB", "steps", "10 counts"})
+    EXPECT_TRUE(is_counted(text)) << text;
+  for (const char* text : {"rad", "1", "", "deg", "counter", "m/s", "discounts"})
+    EXPECT_FALSE(is_counted(text)) << text;
+}
+
 TEST(ParseUnit, FollowsRadiansThatFitPlainNumbers) {
   EXPECT_TRUE(unit("rad").fits(Unit{}));
   EXPECT_TRUE(unit("rad/s").fits(unit("1/s")));

@@ -98,6 +98,26 @@ TEST_F(Experiments, AColumnInRatesPerMinuteIsNoSpeedInRadians) {
   EXPECT_EQ(refusal("rpm"), "");
 }
 
+/// Radians and counts are both plain numbers for the arithmetic.
+TEST_F(Experiments, CountsAreNoRadians) {
+  folder.with("stage.json", diagram(R"("push": {"type": "Constant", "value": {"value": 0, "unit": "N*m"}},
+      "stage": {"type": "Inertia", "inertia": {"value": 2, "unit": "kg*m^2"}, "in": {"torque": "push.y"}})",
+                                    R"("method": "rk4", "step": 0.05, "stop": 1)"));
+  const auto refused = [&](std::string_view heading, std::string_view stated) {
+    folder.with("data.csv", fmt::format("t,T,{}\n0,1,0\n1,1,0.25\n2,1,1\n", heading));
+    folder.experiment(R"("stage.torque": {"column": "T", "unit": "N*m"})",
+                      fmt::format(R"("stage.angle": {{"column": "x"{}}})", stated));
+    return folder.refusal();
+  };
+  for (const char* unit : {"counts", "count", "pulses", "LSB"})
+    EXPECT_TRUE(has(refused(fmt::format("x [{}]", unit), ""), "a count is no radian")) << unit;
+  EXPECT_TRUE(has(refused("x", R"(, "unit": "counts")"), "a count is no radian"));
+  EXPECT_TRUE(has(refused("x [counts]", R"(, "unit": "rad")"), "has another unit in its file"));
+  EXPECT_EQ(refused("x [rad]", ""), "");
+  EXPECT_EQ(refused("x [deg]", ""), "");
+  EXPECT_EQ(refused("x", R"(, "unit": "rad")"), "");
+}
+
 TEST_F(Experiments, AUnitThatCannotBeReadIsAnError) {
   folder.experiment(drive, R"("stage.position": {"column": "x_mm", "unit": "blorps"})");
   expect_refusal({"the unit \"blorps\" cannot be read"});
