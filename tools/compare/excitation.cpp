@@ -91,8 +91,17 @@ double saturated_part(const MeasuredMotion& m) {
 /// Shifts are tried in such steps, and told if they are at least two steps and so long [s].
 constexpr double lag_step_s = 1e-3, least_late_s = 7.5e-3;
 
+/// The mean over the rows that count.
+double mean_of(const MeasuredMotion& m, const std::vector<double>& values) {
+  double sum = 0, n = 0;
+  for (size_t k = 0; k < m.rows(); ++k)
+    if (m.counts[k]) sum += values[k], n += 1;
+  return sum / std::max(n, 1.0);
+}
+
 /// The force produced by the input compared with the force that the model needs: slope, correlation, and time
-/// shift in samples.
+/// shift in samples. A weight that the input holds is in both, and says nothing of units and signs: what
+/// counts is how they change.
 struct InputMatch {
   double slope = 0, correlation = 0;
   int late_samples = 0;
@@ -106,13 +115,14 @@ InputMatch match_input(const MeasuredMotion& m, const ForceResidual& residual) {
   const int most = whole_between(std::ceil(0.1 / m.sample_time), 0, int(m.rows()));
   const int step = std::max(1, whole_between(std::round(lag_step_s / m.sample_time), 0, most));
   InputMatch match;
+  const double held = mean_of(m, m.force), needs_to_hold = mean_of(m, needed);
   double at_zero = 0, best = 1e300;
   for (int lag = -(most / step) * step; lag <= most; lag += step) {
     double uf = 0, uu = 0, ff = 0;
     for (size_t k = 0; k < m.rows(); k += size_t(step)) {
       const ptrdiff_t other = ptrdiff_t(k) - lag;
       if (!m.counts[k] || other < 0 || other >= ptrdiff_t(m.rows())) continue;
-      const double u = m.force[size_t(other)], f = needed[k];
+      const double u = m.force[size_t(other)] - held, f = needed[k] - needs_to_hold;
       uf += u * f, uu += u * u, ff += f * f;
     }
     const double left = ff > 0 ? (uu + ff - 2 * uf) / ff : 0;
@@ -139,8 +149,8 @@ void check_input(const MeasuredMotion& m, const ForceResidual& residual, std::ve
     faults.push_back(
         {"wrong_unit",
          fmt::format("the recorded input makes {:.3g} times the force that the model needs", size),
-         "the residual is mostly this factor: check the unit of the input, the gain between input and force, "
-         "or the mass of the model",
+         "the residual is mostly this factor: check the units of the input and of the position, the scale of "
+         "the sensor, the gain between input and force, or the mass of the model",
          size > 20 || size < 0.05});
   const double late_s = match.late_samples * m.sample_time;
   if (std::abs(match.late_samples) > 1 && std::abs(late_s) >= least_late_s && match.gained > 0.6 &&

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include "tests/engine/written_diagram.h"
 #include "tools/compare/compare.h"
 
@@ -21,6 +22,7 @@ struct Record {
   std::function<double(double t)> phase = [](double t) { return 3 * t + 1.5 * std::sin(0.9 * t); };
   double offset_per_second = 0;  ///< m/s: one way only
   double unit_error = 1;
+  double scale = 1;       ///< of the column of the position
   int late = 0;           ///< delay of the force column in samples
   std::vector<int> lost;  ///< samples without a row
   std::function<double(double)> shown = [](double force) { return force; };  ///< in its column
@@ -42,7 +44,8 @@ struct Record {
     std::string text = "t,F,x\n";
     for (int k = 0; k * dt < duration; ++k)
       if (std::ranges::find(lost, k) == lost.end())
-        text += fmt::format("{:.3f},{:.12g},{:.12g}\n", k * dt, shown(force((k - late) * dt)), x(k * dt));
+        text +=
+            fmt::format("{:.3f},{:.12g},{:.12g}\n", k * dt, shown(force((k - late) * dt)), scale * x(k * dt));
     folder.with("data.csv", text);
     folder.with("axis.json", diagram(R"("push": {"type": "Constant", "value": {"value": 0, "unit": "N"}},
       "viscous": {"type": "ViscousFriction", "damping": 5, "in": {"velocity": "mass.velocity"}},
@@ -193,6 +196,18 @@ TEST(RecordFaults, AreNamed) {
   Record brief;
   brief.duration = 1.2;
   EXPECT_TRUE(has_fault(brief.compared(), "too_short"));
+}
+
+/// The input of a lift mostly holds its weight, whatever the units are.
+TEST(RecordFaults, AreNamedBesideAWeight) {
+  Record lift;
+  lift.extra = [](double, double, double, double) { return 300.0; };
+  EXPECT_FALSE(has_fault(lift.compared(), "wrong_unit"));
+  EXPECT_FALSE(has_fault(lift.compared(), "wrong_sign"));
+  lift.scale = 180 / std::numbers::pi;
+  EXPECT_TRUE(has_fault(lift.compared(), "wrong_unit"));
+  lift.scale = -1;
+  EXPECT_TRUE(has_fault(lift.compared(), "wrong_sign"));
 }
 
 TEST(Excitation, SaysWhatARecordCannotTell) {
