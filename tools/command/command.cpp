@@ -44,9 +44,12 @@ LoadOptions DiagramArguments::options() const {
   return options;
 }
 
-void DiagramArguments::warn_of_settings_left_out(std::string_view output) const {
+void DiagramArguments::warn_of_settings_left_out(std::string_view output,
+                                                 const std::vector<std::string>& in_the_file) const {
   std::string settings;
-  for (const std::string& text : set) settings += " --set " + text;
+  for (const std::string& text : set)
+    if (std::ranges::find(in_the_file, text.substr(0, text.find('='))) == in_the_file.end())
+      settings += " --set " + text;
   for (const std::string& text : variants) settings += " --variant " + text;
   if (!output.empty() && !settings.empty())
     tell("warning: {} was written from {} and does not contain{}: give it again with that file\n",

@@ -22,7 +22,9 @@ struct DiagramArguments {
   /// Loads block libraries. Throws InputError for malformed --set and --variant.
   LoadOptions options() const;
   /// Names the settings of the command line that a diagram written from the file at `path` does not have.
-  void warn_of_settings_left_out(std::string_view output) const;
+  /// `in_the_file`: paths of which the file has a value of its own, so that a setting of them was a start.
+  void warn_of_settings_left_out(std::string_view output,
+                                 const std::vector<std::string>& in_the_file = {}) const;
 };
 
 /// Adds a subcommand; `action` receives the exit code.

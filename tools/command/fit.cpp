@@ -78,7 +78,7 @@ int run(const FitArguments& a) {
     const std::string text = with_fitted_values(a.diagram.path, result, problems);
     if (problems.has_errors()) throw InputError(std::move(problems));
     write_fitted(a, text);
-    a.diagram.warn_of_settings_left_out(a.output);
+    a.diagram.warn_of_settings_left_out(a.output, a.parameters);
   }
   if (!a.report.empty())
     report::write_html(a.report, fit_page(result, std::filesystem::path(a.diagram.path).filename().string()));

@@ -248,12 +248,18 @@ void add_intervals(FitModel& model, const Best& best, const std::vector<FittedPa
   }
 }
 
+/// Nearer to a limit than the step of its derivative nothing is known of a parameter: beyond the limit, as
+/// with a stiffness of zero, the diagram need not run.
 void warn_of_limits(const std::vector<FittedParameter*>& parameters, std::vector<std::string>& warnings) {
+  constexpr double rounding = 1e-4;  // of a step, by which the last one may be beside it
   for (const FittedParameter* p : parameters)
-    if (const double near = 1e-6 * std::abs(p->start);
+    if (const double near = (1 + rounding) * derivative_step(p->start, p->value);
         p->value <= p->least + near || p->value >= p->most - near)
-      warnings.push_back(fmt::format(
-          "\"{}\" ends at the limit of what its block, its sign at the start or its range allows", p->path));
+      warnings.push_back(
+          fmt::format("\"{}\" ends at the limit of what its block, its sign at the start or its range "
+                      "allows, or within a "
+                      "hundredth of its start from it",
+                      p->path));
 }
 
 }  // namespace

@@ -12,13 +12,6 @@
 namespace loopwright {
 namespace {
 
-/// Large steps: where friction sticks and releases, errors jump from step to step, and small differences
-/// measure only these jumps.
-double step_of(const DiagramNumber& number, double value) {
-  const double size = std::max(std::abs(value), std::abs(number.value));
-  return size > 0 ? 1e-2 * size : 1e-2;
-}
-
 void take_offset_out(ComparedSignal& signal, size_t fitted) {
   const size_t rows = fitted > 0 ? fitted : signal.error.size();
   double mean = 0;
@@ -27,6 +20,11 @@ void take_offset_out(ComparedSignal& signal, size_t fitted) {
 }
 
 }  // namespace
+
+double derivative_step(double start, double value) {
+  const double size = std::max(std::abs(value), std::abs(start));
+  return size > 0 ? 1e-2 * size : 1e-2;
+}
 
 double scale_of(const DiagramNumber& number) { return number.value != 0 ? std::abs(number.value) : 1.0; }
 
@@ -245,7 +243,7 @@ Eigen::MatrixXd FitModel::jacobian(const std::vector<double>& values, const Weig
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(Eigen::Index(at.size()), Eigen::Index(values.size()));
   for (size_t i = 0; i < values.size(); ++i) {
     const DiagramNumber& number = unknowns_[i].number;
-    const double step = step_of(number, values[i]);
+    const double step = derivative_step(number.value, values[i]);
     std::vector<double> up = values, down = values;
     up[i] = std::min(values[i] + step, number.most), down[i] = std::max(values[i] - step, number.least);
     Eigen::Index row = 0;

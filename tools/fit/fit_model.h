@@ -76,6 +76,10 @@ class FitModel {
   int simulations_ = 0;
 };
 
+/// Of differences that stand for derivatives. Large steps: where friction sticks and releases, errors jump
+/// from step to step, and small differences measure only these jumps.
+double derivative_step(double start, double value);
+
 /// The unit of an unknown in an optimization: of the size that it has at the start.
 double scale_of(const DiagramNumber& number);
 

@@ -314,6 +314,8 @@ TEST_F(Fitted, ParametersKeepTheirSignAndStayInTheirRange) {
   const LoadOptions reversed{.set = {{"motor.gain", "-1"}}};
   const Fit kept = fit(folder.path("axis.json"), {folder.path("e.json")}, {"motor.gain"}, reversed);
   EXPECT_LE(kept.parameters[0].value, 0);
+  EXPECT_TRUE(std::ranges::any_of(kept.warnings, [](const std::string& w) { return has(w, "at the limit"); }))
+      << kept.parameters[0].value;
   options.ranges = {{"motor.gain", -2, 2}};
   const Fit free = fit(folder.path("axis.json"), {folder.path("e.json")}, {"motor.gain", "mass", "damping"},
                        {.set = {{"motor.gain", "-0.1"}, {"mass", "2 kg"}}}, options);
