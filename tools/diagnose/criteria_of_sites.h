@@ -64,6 +64,9 @@ constexpr size_t most_slow_disturbances = 3, most_first_disturbances = 1;
 /// [-2 ln L, and for each reading] By which an input must suit the record better, if it does something else
 /// between its rows, before the experiment's statement is questioned: as much as a term must gain.
 constexpr double least_gain_of_other_input = 25, least_gain_of_other_input_per_reading = 0.02;
+/// [residual force of the nominal diagram] Above it the balance speaks against effects of which none is
+/// necessary. Moments of blows that are known roughly made 1.11 of a right one.
+constexpr double worse_balance = 1.2;
 /// [rows] An input that the log holds late is so by whole rows: 0.04 to 0.11 off where it is, 1 where not.
 constexpr double most_beside_a_row = 0.2;
 /// [rms error of simulation] An answer by simulation stands only if it leaves at most this of the other's,

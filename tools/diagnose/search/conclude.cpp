@@ -285,6 +285,8 @@ void judge_errors(const Trials& trials, Conclusion& result) {
   const bool is_noisy = noise.white > 2 * criteria::least_white_noise * trials.force_rms;
   const double rows = double(fitted_numbers(trials)) / double(trials.ports());
   const double most_bursts = std::max(least_bursts, most_bursts_per_row * rows);
+  if (estimate.members.empty() && noise.white > criteria::loud_noise * trials.force_rms)
+    result.most_portmanteau = criteria::most_portmanteau_of_noise_seen;  // or something hides in the noise
   const double of_squares = portmanteau_of_squares(trials, *estimate.fitted);
   result.portmanteau = portmanteau(trials, *estimate.fitted);
   // Beside less noise the arithmetic of the diagram comes in bursts too.
@@ -292,7 +294,8 @@ void judge_errors(const Trials& trials, Conclusion& result) {
   result.comes_in_bursts = matters && of_squares > most_bursts;
   if (result.portmanteau > most_portmanteau_of_counted || result.comes_in_bursts)
     if (const WhitenedErrors errors = errors_of_counts(trials, estimate); !errors.empty()) {
-      if (is_noisy && estimate.members.empty()) result.most_portmanteau = most_portmanteau_of_counted;
+      if (is_noisy && estimate.members.empty())
+        result.most_portmanteau = std::min(result.most_portmanteau, most_portmanteau_of_counted);
       result.counts_portmanteau = portmanteau_of_counts(trials, errors);
       result.comes_in_bursts &= of_squares - reach_of_counts * bursts_of_counts(trials, errors) > most_bursts;
     }
