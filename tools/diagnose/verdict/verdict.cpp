@@ -10,6 +10,7 @@
 #include "tools/diagnose/search/names.h"
 #include "tools/diagnose/search/wandering_sensor.h"
 #include "tools/diagnose/verdict/cancelling_effects.h"
+#include "tools/diagnose/verdict/open_answers.h"
 #include "tools/diagnose/verdict/remainder_interval.h"
 #include "tools/diagnose/verdict/undetermined.h"
 
@@ -115,34 +116,6 @@ std::string why_inertia_is_open(const Trials& trials, const Diagnosis& diagnosis
       std::ranges::any_of(diagnosis.not_looked_for, lists_inertia) &&
       std::ranges::find(diagnosis.effects, "force_gain", &DiagnosedEffect::name) != diagnosis.effects.end();
   return is_open ? "what is called force_gain may be another inertia, which could not be looked for" : "";
-}
-
-/// A sensor that is off by c x² takes the force M (2 c x a + 2 c v²) of a mass M for motion. An inertia
-/// M (1 + 2 c x), as of a linkage or a drum, asks for M (2 c x a + c v²), and a force constant that falls
-/// along the way for M 2 c x a: with a drag that has the sign of the direction they are the same law.
-std::string why_sensor_is_open(const Diagnosis& diagnosis) {
-  const auto has = [&](std::string_view name, std::string_view form) {
-    return std::ranges::any_of(diagnosis.effects, [&](const DiagnosedEffect& e) {
-      return e.name == name && (form.empty() || e.form == form);
-    });
-  };
-  if (!has("sensor_nonlinearity", "") || !has("direction_dependent_friction", "drag")) return {};
-  return "an inertia or a force constant that changes along the way would look like sensor_nonlinearity with "
-         "this drag, and is not in the catalogue: check the sensor against another one";
-}
-
-/// Of effects that are all optional nothing is written, and the nominal diagram has no worse balance.
-std::string why_optional_effects_are_open(const Diagnosis& diagnosis) {
-  const auto is_optional = [](const DiagnosisStep& step) { return step.is_optional; };
-  const bool is_nothing_necessary =
-      diagnosis.steps.size() > 1 &&
-      std::all_of(diagnosis.steps.begin() + 1, diagnosis.steps.end(), is_optional);
-  if (!is_nothing_necessary || !(diagnosis.error_after > criteria::worse_balance * diagnosis.error_before))
-    return {};
-  return fmt::format(
-      "nothing of what is named is necessary, and the residual force is {:.2f} times that of the "
-      "nominal diagram with it",
-      diagnosis.error_after / diagnosis.error_before);
 }
 
 /// What makes up for a missing effect in the fitted rows need not do so in others.
