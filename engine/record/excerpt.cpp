@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include "engine/record/column_units.h"
 #include "engine/unit/unit.h"
 #include "models/real/whole.h"
 
@@ -14,6 +13,11 @@ constexpr double most_rows_late = 1000;  // more than any pipeline holds
 
 ColumnError error_at(const Value& at, const Reader& reader) {
   return [&at, &reader](std::string message) -> Problem& { return reader.error(at, std::move(message)); };
+}
+
+/// Where no number is missing any more.
+void forget_holes_left_out(Column& column) {
+  if (std::ranges::none_of(column.values, [](double value) { return std::isnan(value); })) column.holes = {};
 }
 
 /// A time in s.
@@ -110,7 +114,6 @@ std::optional<Column> Excerpt::computed(const NewColumn& wanted, const Column& f
   const ColumnError error = error_at(wanted.at, reader);
   Column column = from;
   column.name = wanted.name;
-  if (wanted.rows_late > 0) column.values = moved_earlier(column.values, wanted.rows_late);
   if (!wanted.is_computed) {
     if (!unit_of(from, wanted.unit, error)) return {};
     if (from.unit.empty()) column.unit = wanted.unit;
@@ -119,7 +122,9 @@ std::optional<Column> Excerpt::computed(const NewColumn& wanted, const Column& f
   // With a scale, the heading may state another quantity: volts that mean metres. Another scale of the same
   // quantity is a contradiction as ever, because the factor between the two could be meant or forgotten.
   const auto heading = parse_unit(from.unit), stated = parse_unit(wanted.unit);
-  const bool is_another_quantity = !from.unit.empty() && heading && stated && !heading->fits(*stated);
+  const bool is_another_quantity =
+      !from.unit.empty() && heading && stated &&
+      (!heading->fits(*stated) || is_counted(from.unit) != is_counted(wanted.unit));
   if (!is_another_quantity && !unit_of(from, wanted.unit, error)) return {};
   if (!wanted.unit.empty() && !stated) return unit_of({"", wanted.unit, {}, ""}, "", error), std::nullopt;
   if (!wanted.unit.empty()) column.unit = wanted.unit;
@@ -134,10 +139,23 @@ std::optional<Column> Excerpt::computed(const NewColumn& wanted, const Column& f
   return column;
 }
 
+std::optional<Column> Excerpt::column_moved(const Recording& recording, const NewColumn& wanted,
+                                            const ColumnError& error) {
+  const Column* raw = recording.find(wanted.column);
+  if (!raw || wanted.rows_late == 0) {
+    raw = find_column(recording, wanted.column, error);
+    return raw ? std::optional(*raw) : std::nullopt;
+  }
+  Column moved = *raw;
+  moved.values = moved_earlier(moved.values, wanted.rows_late);
+  forget_holes_left_out(moved);
+  return is_without_holes(moved, error) ? std::optional(std::move(moved)) : std::nullopt;
+}
+
 void Excerpt::add_columns(Recording& recording, const Reader& reader) const {
   std::vector<Column> added;
   for (const NewColumn& wanted : columns_) {
-    const Column* from = find_column(recording, wanted.column, error_at(wanted.at, reader));
+    const auto from = column_moved(recording, wanted, error_at(wanted.at, reader));
     if (!from) continue;
     if (wanted.name != wanted.column && recording.find(wanted.name)) {
       reader.error(wanted.at, fmt::format("the data already have a column \"{}\"", wanted.name)).hint =
@@ -163,7 +181,10 @@ void Excerpt::leave_out_rows_without_number(Recording& recording, const Reader& 
                                          latest->rows_late, recording.rows()));
     return;
   }
-  for (Column& column : recording.columns) column.values.resize(column.values.size() - latest->rows_late);
+  for (Column& column : recording.columns) {
+    column.values.resize(column.values.size() - latest->rows_late);
+    forget_holes_left_out(column);
+  }
 }
 
 void Excerpt::keep_rows(Recording& recording, const std::string& time, const Reader& reader) const {
@@ -186,8 +207,7 @@ void Excerpt::keep_rows(Recording& recording, const std::string& time, const Rea
   for (Column& column : recording.columns) {
     size_t row = 0;
     std::erase_if(column.values, [&](double) { return keep[row++] == 0; });
-    if (std::ranges::none_of(column.values, [](double value) { return std::isnan(value); }))
-      column.holes = {};
+    forget_holes_left_out(column);
   }
 }
 

@@ -7,6 +7,7 @@
 #include "engine/json/file_shape.h"
 #include "engine/json/reader.h"
 #include "engine/json/stated_number.h"
+#include "engine/record/column_units.h"
 #include "engine/record/recording.h"
 
 namespace loopwright {
@@ -44,6 +45,9 @@ class Excerpt {
   static std::optional<NewColumn> read_column(const Value::Member& entry, const Reader& reader);
   void read_rows(const Value::Member& excerpt, const Reader& reader);
   static std::optional<Column> computed(const NewColumn& wanted, const Column& from, const Reader& reader);
+  /// With the rows to which its numbers belong; an error where one of them is missing.
+  static std::optional<Column> column_moved(const Recording& recording, const NewColumn& wanted,
+                                            const ColumnError& error);
   void add_columns(Recording& recording, const Reader& reader) const;
   void leave_out_rows_without_number(Recording& recording, const Reader& reader) const;
   void keep_rows(Recording& recording, const std::string& time, const Reader& reader) const;

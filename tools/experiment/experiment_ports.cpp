@@ -42,7 +42,7 @@ std::optional<Number> find_port(const Plan& plan, const std::string& port,
   const auto of_port = plan.unit_of(numbers[0]), of_data = unit ? parse_unit(*unit) : std::nullopt;
   if (!of_port || !of_data) return numbers[0];
   const Conversion::Kind kind = conversion(*of_data, *of_port).kind;
-  const bool is_count = of_port->radians() != 0 && is_counted(*unit);
+  const bool is_count = of_port->radians() > 0 && of_data->radians() == 0 && is_counted(*unit);
   if (!is_count && (kind == Conversion::Kind::none || kind == Conversion::Kind::turns)) return numbers[0];
   auto& p =
       problems.error(place, pointer, "", fmt::format("\"{}\" is in another unit than its column", port));

@@ -248,18 +248,20 @@ void add_intervals(FitModel& model, const Best& best, const std::vector<FittedPa
   }
 }
 
-/// Nearer to a limit than the step of its derivative nothing is known of a parameter: beyond the limit, as
-/// with a stiffness of zero, the diagram need not run.
+/// Nearer to zero than the step of its derivative no difference is known of a parameter that must not change
+/// its sign: without any stiffness the diagram need not run.
 void warn_of_limits(const std::vector<FittedParameter*>& parameters, std::vector<std::string>& warnings) {
   constexpr double rounding = 1e-4;  // of a step, by which the last one may be beside it
-  for (const FittedParameter* p : parameters)
-    if (const double near = (1 + rounding) * derivative_step(p->start, p->value);
-        p->value <= p->least + near || p->value >= p->most - near)
-      warnings.push_back(
-          fmt::format("\"{}\" ends at the limit of what its block, its sign at the start or its range "
-                      "allows, or within a "
-                      "hundredth of its start from it",
-                      p->path));
+  for (const FittedParameter* p : parameters) {
+    const double step = (1 + rounding) * derivative_step(p->start, p->value),
+                 near = 1e-6 * std::abs(p->start);
+    const auto reach = [&](double limit) { return limit == 0 ? step : near; };
+    if (p->value <= p->least + reach(p->least) || p->value >= p->most - reach(p->most))
+      warnings.push_back(fmt::format(
+          "\"{}\" ends at the limit of what its block, its sign at the start or its range allows, or "
+          "a hundredth of its start away from zero",
+          p->path));
+  }
 }
 
 }  // namespace

@@ -113,6 +113,16 @@ TEST_F(Experiments, CountsAreNoRadians) {
     EXPECT_TRUE(has(refused(fmt::format("x [{}]", unit), ""), "a count is no radian")) << unit;
   EXPECT_TRUE(has(refused("x", R"(, "unit": "counts")"), "a count is no radian"));
   EXPECT_TRUE(has(refused("x [counts]", R"(, "unit": "rad")"), "has another unit in its file"));
+  const std::string torque = R"("stage.torque": {"column": "T", "unit": "N*m"})",
+                    angle = R"("stage.angle": {"column": "a"})";
+  for (const char* unit : {"rad", "deg"}) {  // what the hint says
+    folder.with("data.csv", "t,T,x [counts]\n0,1,0\n1,1,1\n2,1,4\n");
+    folder.experiment(torque, angle,
+                      fmt::format(R"(, "columns": {{"a": {{"column": "x", "scale": {}, "unit": "{}"}}}})",
+                                  unit == std::string("rad") ? "0.25" : "14.3239448782705802", unit));
+    EXPECT_EQ(folder.refusal(), "") << unit;
+    EXPECT_NEAR(folder.compared().signals[0].rmse, 0, 1e-9) << unit;
+  }
   EXPECT_EQ(refused("x [rad]", ""), "");
   EXPECT_EQ(refused("x [deg]", ""), "");
   EXPECT_EQ(refused("x", R"(, "unit": "rad")"), "");
@@ -165,6 +175,8 @@ TEST_F(Experiments, AColumnThatWasLoggedLateIsReadEarlier) {
   const Comparison c = folder.compared();
   EXPECT_EQ(c.time, (std::vector<double>{0, 1, 2, 3})) << "no command belongs to the last row";
   EXPECT_NEAR(c.signals[0].rmse, 0, 1e-9);
+  folder.with("data.csv", "t,F,x_mm\n0,,0\n1,1,250\n2,1,1000\n3,0,2000\n4,0,\n");  // in cells left out
+  EXPECT_NEAR(folder.compared().signals[0].rmse, 0, 1e-9);
   folder.experiment(drive, position, R"(, "columns": {"F": {"rows_late": 4}})");
   expect_refusal({R"("F" is 4 rows late in a recording of 5 rows)"});
   folder.experiment(drive, position, R"(, "columns": {"F": {"rows_late": 0.5}})");

@@ -42,13 +42,14 @@ bool may_be_late(const Trials& trials, const Estimate& found) {
 std::optional<size_t> rows_logged_late(Trials& trials, const Estimate& found,
                                        std::vector<std::string>& trail) {
   constexpr int iterations = 6;
-  if (!may_be_late(trials, found)) return {};
+  if (!may_be_late(trials, found) || trials.work->is_spent(criteria::work_with_rivals)) return {};
   const auto fitted = [&](const std::vector<Member>& members) {
     return with_own_noise(trials, fit_members(trials, members, found.noise, found.motion, iterations),
                           iterations);
   };
   const double recorded = fitted(found.members).misfit();
-  double most = criteria::least_gain_of_other_input;
+  double most = std::max(criteria::least_gain_of_other_input,
+                         criteria::least_gain_of_other_input_per_reading * double(fitted_numbers(trials)));
   std::optional<size_t> late;
   for (size_t i = 0; i < early_inputs().size(); ++i) {
     std::vector<Member> members = found.members;

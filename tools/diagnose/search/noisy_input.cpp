@@ -103,7 +103,7 @@ std::optional<Replacements> replacements_of_late_input(Trials& trials, const Est
 }  // namespace
 
 std::optional<InputCorrection> noise_instead_of_late_input(Trials& trials, const Estimate& found,
-                                                      size_t catalogue) {
+                                                           size_t catalogue) {
   const auto by = replacements_of_late_input(trials, found, catalogue);
   if (!by) return {};
   const auto loss = [&](const Estimate& e) { return loss_of(trials, e, catalogue); };

@@ -10,7 +10,7 @@ namespace loopwright::diagnosis {
 /// averaged over the rows after each as well; or an input that is too early by as much gains nearly as much
 /// as the late one. A command that the machine obeys loses by either. Empty: nothing is late, or it truly is.
 std::optional<InputCorrection> noise_instead_of_late_input(Trials& trials, const Estimate& found,
-                                                      size_t catalogue);
+                                                           size_t catalogue);
 
 /// Whether every record measures the position. A controller that does knows more than a record of the
 /// velocity alone, and what it answers to noise resembles an input that is late.

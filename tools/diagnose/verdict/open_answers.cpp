@@ -21,7 +21,8 @@ std::string why_optional_effects_are_open(const Diagnosis& diagnosis) {
   const bool is_nothing_necessary =
       diagnosis.steps.size() > 1 &&
       std::all_of(diagnosis.steps.begin() + 1, diagnosis.steps.end(), is_optional);
-  if (!is_nothing_necessary || !(diagnosis.error_after > criteria::worse_balance * diagnosis.error_before))
+  if (!is_nothing_necessary || !(diagnosis.error_before > 0) ||
+      !(diagnosis.error_after > criteria::worse_balance * diagnosis.error_before))
     return {};
   return fmt::format(
       "nothing of what is named is necessary, and the residual force is {:.2f} times that of the "

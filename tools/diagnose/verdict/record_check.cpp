@@ -61,11 +61,12 @@ RecordFinding input_is_logged_late(size_t rows) {
   const char* const plural = rows == 1 ? "" : "s";
   return {
       fmt::format("the machine answers to its recorded input {} row{} before the record has it: the log "
-                  "wrote each value {} row{} late",
+                  "wrote each value {} row{} late, or the diagram delays the input by so much",
                   rows, plural, rows, plural),
-      fmt::format("it was read {} row{} earlier for this diagnosis: state \"rows_late\": {} of its column "
-                  "in \"columns\" of the experiment, so that compare and fit do too",
-                  rows, plural, rows)};
+      fmt::format("it was read {} of the rows that are used earlier for this diagnosis: state \"rows_late\" "
+                  "of its column in \"columns\" of the experiment, in rows of the file, so that compare and "
+                  "fit read it so too",
+                  rows)};
 }
 
 RecordFinding angle_leaps(std::string_view angle, size_t count) {
