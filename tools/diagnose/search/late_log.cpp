@@ -48,8 +48,7 @@ std::optional<size_t> rows_logged_late(Trials& trials, const Estimate& found,
                           iterations);
   };
   const double recorded = fitted(found.members).misfit();
-  double most = std::max(criteria::least_gain_of_other_input,
-                         criteria::least_gain_of_other_input_per_reading * double(fitted_numbers(trials)));
+  double most = criteria::least_gain_of_other_input;  // the share decides: small gains are as certain of it
   std::optional<size_t> late;
   for (size_t i = 0; i < early_inputs().size(); ++i) {
     std::vector<Member> members = found.members;
