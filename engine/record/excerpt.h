@@ -12,8 +12,9 @@
 
 namespace loopwright {
 
-///     "columns": {"x": {"column": "data[1]", "scale": -2e-6, "offset": "3 mm", "unit": "m", "rows_late":
-///     1}}, "excerpt": {"skip": 100, "from": "2 s", "to": 10, "decimate": 4}
+///     "columns": {"x": {"column": "data[1]", "scale": -2e-6, "offset": "3 mm", "unit": "m"},
+///                 "u": {"rows_late": 1}},
+///     "excerpt": {"skip": 100, "from": "2 s", "to": 10, "decimate": 4}
 ///
 /// value = scale · number in the file + offset, in the unit; a column gets its new name. One that was logged
 /// some rows late gets the number of so many rows after; the last rows, to which no number belongs then, are
