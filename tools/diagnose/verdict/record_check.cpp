@@ -185,8 +185,7 @@ RecordFinding rows_are_merged(const AxisRecord& record) {
                       shown(record.sample_time, "s")),
           fmt::format("a command that comes late by less than {} is not told, unless its force is above the "
                       "noise: diagnose a part of at most {:.0f} rows",
-                      shown(shortest_s, "s"), criteria::most_rows),
-          false, false};
+                      shown(shortest_s, "s"), criteria::most_rows)};
 }
 
 }  // namespace
