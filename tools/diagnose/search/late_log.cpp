@@ -37,6 +37,13 @@ bool may_be_late(const Trials& trials, const Estimate& found) {
          });
 }
 
+/// Whether an early input, the first of the members, explains anything beside the noise as it was found.
+/// Where it does not, no other noise makes it, and to fit that takes by far the most time.
+bool explains_anything(Trials& trials, const std::vector<Member>& members, const Estimate& found) {
+  constexpr double least_gain = 3.84;  // in -2 ln L: chance gains as much in one of 20
+  return found.profile - fit_members(trials, members, found.noise, found.motion, 1).profile > least_gain;
+}
+
 }  // namespace
 
 std::optional<size_t> rows_logged_late(Trials& trials, const Estimate& found,
@@ -47,14 +54,16 @@ std::optional<size_t> rows_logged_late(Trials& trials, const Estimate& found,
     return with_own_noise(trials, fit_members(trials, members, found.noise, found.motion, iterations),
                           iterations);
   };
-  const double recorded = fitted(found.members).misfit();
+  std::optional<double> recorded;
   double most = criteria::least_gain_of_other_input;  // the share decides: small gains are as certain of it
   std::optional<size_t> late;
   for (size_t i = 0; i < early_inputs().size(); ++i) {
     std::vector<Member> members = found.members;
     members.insert(members.begin(), Member{&early_inputs()[i], {1}, {}});
+    if (!explains_anything(trials, members, found)) continue;
+    if (!recorded) recorded = fitted(found.members).misfit();
     const Estimate trial = fitted(members);
-    const double gain = recorded - trial.misfit();
+    const double gain = *recorded - trial.misfit();
     if (!(gain > most)) continue;
     const double share = trial.members.front().linear.front();
     trail.push_back(fmt::format("the input of {} rows later: share {:.2f}, gain {:.1f}", i + 1, share, gain));
