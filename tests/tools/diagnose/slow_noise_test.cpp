@@ -5,6 +5,7 @@
 #include <random>
 #include "tests/tools/diagnose/diagnosed.h"
 #include "tests/tools/diagnose/plain_axis.h"
+#include "tools/diagnose/search/noise_likelihood.h"
 #include "tools/diagnose/search/prepare.h"
 
 namespace loopwright::slow_noise_test {
@@ -85,6 +86,30 @@ TEST(SlowNoise, FarAboveWhiteNoiseThatIsSeenIsNone) {
   const NoisyMachine seen{
       .sample_time = 1e-3, .white = 0.001, .slow = 0.03, .time = 0.3, .sensor_noise = 0, .rows = 10000};
   EXPECT_FALSE(remainder_of(seen).is_noise);
+}
+
+/// What is no noise counts as white noise, of which coarse counts ask for more than it has in a row: they
+/// show only the slow part of the motion. As loud as the errors ask for, it predicts better than any other.
+TEST(SlowNoise, CountsAsWhiteAsLoudAsTheErrorsAskFor) {
+  using namespace diagnosis;
+  DiagramFolder folder;
+  write({.sample_time = 1e-3, .white = 0.02, .slow = 0.5, .time = 0.3, .count = 2e-5, .rows = 10000}, folder);
+  Motion motion;
+  Trials trials = prepare(folder.path("axis.json"), {folder.path("e.json")}, {}, motion);
+  trials.run_along(Trials::Rows::fitted);
+  motion = cut(motion, trials);
+  const Estimate estimate = fit_members(trials, {}, search_noise(trials), motion, 0);
+  ASSERT_FALSE(is_remainder_noise(trials, *estimate.fitted, estimate.noise));
+  const Noise noise = fit_noise_alone(trials, *estimate.fitted, estimate.noise, FreeNoise::all);
+  EXPECT_LT(noise.slow(), 0.1 * noise.white);
+  std::vector<double> error;
+  const auto misfit = [&](double factor) {
+    Noise other = noise;
+    other.white *= factor, other.step *= factor;
+    return noise_misfit(trials, *estimate.fitted, other, error);
+  };
+  EXPECT_LT(misfit(1), misfit(0.8));
+  EXPECT_LT(misfit(1), misfit(1.25));
 }
 
 /// Rows of 20 kHz have each much white noise, beside which any slow force is small: that of a millisecond

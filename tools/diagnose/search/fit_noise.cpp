@@ -101,27 +101,31 @@ bool is_slow_force_noise(const Trials& trials, const Noise& noise) {
          slow * slow * samples_alike(noise) <= criteria::most_slow_density;
 }
 
+/// Whether another noise predicts no worse than chance lets it.
+bool is_as_likely(const Trials& trials, const std::vector<Fitted>& fitted, const Noise& other,
+                  const Noise& noise) {
+  std::vector<double> error;
+  const double lost = noise_misfit(trials, fitted, other, error) - noise_misfit(trials, fitted, noise, error);
+  return lost < criteria::most_lost_as_white;
+}
+
 /// As much white noise as a slow force has beside it that is noise. A sensor's noise can hide how much there
 /// is: the likelihood is flat then. Empty: it predicts worse.
 std::optional<Noise> with_louder_white(const Trials& trials, const std::vector<Fitted>& fitted,
                                        const Noise& noise) {
   Noise louder = noise;
   louder.white = noise.slow() / (criteria::most_slow_noise * white_beside(trials, noise));
-  std::vector<double> error;
-  const double lost =
-      noise_misfit(trials, fitted, louder, error) - noise_misfit(trials, fitted, noise, error);
-  return lost < criteria::most_lost_as_white ? std::optional(louder) : std::nullopt;
+  return is_as_likely(trials, fitted, louder, noise) ? std::optional(louder) : std::nullopt;
 }
 
-/// All of a slow force counted as white noise that does as much to a slow motion. Empty: it predicts worse.
-std::optional<Noise> as_white(const Trials& trials, const std::vector<Fitted>& fitted, const Noise& noise) {
+/// All of a slow force counted as white noise, as loud as the errors ask for: a sensor that shows the force
+/// of every row asks for the same variance, one with coarse counts for more, which does as much to a slow
+/// motion.
+Noise as_white(const Trials& trials, const std::vector<Fitted>& fitted, const Noise& noise) {
   Noise white = noise;
-  white.white = std::hypot(noise.white, noise.slow() * std::sqrt(samples_alike(noise)));
+  white.white = std::hypot(noise.white, noise.slow());
   white.step = criteria::next_to_no_slow_noise * white.white * std::sqrt(1 - noise.memory * noise.memory);
-  white = fit_noise(trials, fitted, white, FreeNoise::white);
-  std::vector<double> error;
-  const double lost = noise_misfit(trials, fitted, white, error) - noise_misfit(trials, fitted, noise, error);
-  return lost < criteria::most_lost_as_white ? std::optional(white) : std::nullopt;
+  return fit_noise(trials, fitted, white, FreeNoise::white);
 }
 
 }  // namespace
@@ -156,7 +160,7 @@ bool is_soon_forgotten(const Noise& noise) { return noise.memory_samples() < cri
 bool is_remainder_noise(const Trials& trials, const std::vector<Fitted>& fitted, const Noise& start) {
   const Noise noise = fit_noise(trials, fitted, start, FreeNoise::all);
   return is_slow_force_noise(trials, noise) || with_louder_white(trials, fitted, noise) ||
-         as_white(trials, fitted, noise);
+         is_as_likely(trials, fitted, as_white(trials, fitted, noise), noise);
 }
 
 Noise fit_noise_alone(const Trials& trials, const std::vector<Fitted>& fitted, const Noise& start,
@@ -167,11 +171,9 @@ Noise fit_noise_alone(const Trials& trials, const std::vector<Fitted>& fitted, c
       std::max(from.step, criteria::usual_slow_noise * from.white * std::sqrt(1 - from.memory * from.memory));
   Noise noise = fit_noise(trials, fitted, from, free);
   if (is_slow_force_noise(trials, noise)) return noise;
-  if (const auto white = as_white(trials, fitted, noise)) return *white;
-  if (const auto louder = with_louder_white(trials, fitted, noise)) return *louder;
-  noise.white = std::hypot(noise.white, noise.slow());
-  noise.step = criteria::next_to_no_slow_noise * noise.white * std::sqrt(1 - noise.memory * noise.memory);
-  return noise;
+  const Noise white = as_white(trials, fitted, noise);
+  if (is_as_likely(trials, fitted, white, noise)) return white;
+  return with_louder_white(trials, fitted, noise).value_or(white);
 }
 
 }  // namespace loopwright::diagnosis

@@ -57,9 +57,9 @@ bool is_soon_forgotten(const Noise& noise);
 /// lasts no longer than the sensor takes to show it. Otherwise it is something that the model lacks.
 bool is_remainder_noise(const Trials& trials, const std::vector<Fitted>& fitted, const Noise& start);
 
-/// fit_noise; but if the slow force is more than noise, all of it is counted as white. Otherwise the
-/// predictor would follow what the model lacks, and effects fitted with it would lose their steady parts to
-/// it.
+/// fit_noise; but if the slow force is more than noise, all of it is counted as white, by the likelihood too.
+/// Otherwise the predictor would follow what the model lacks, and effects fitted with it would lose their
+/// steady parts to it; with less noise than that, the errors would ask for effects that make up for it.
 Noise fit_noise_alone(const Trials& trials, const std::vector<Fitted>& fitted, const Noise& start,
                       FreeNoise free);
 
