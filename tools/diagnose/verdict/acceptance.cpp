@@ -1,6 +1,7 @@
 #include "tools/diagnose/verdict/acceptance.h"
 #include <fmt/format.h>
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -86,7 +87,8 @@ class Judge {
       for (size_t m : state.staircase.added[i])
         if (state.conclusion.weights[m].certainty < 1 && !is_worse(state.runs[i], state.runs[i - 1]))
           return Refusal{m, "its interval contains zero, and the diagram simulates no worse without it"};
-    return load_of_wandering_sensor(state);
+    if (auto refusal = load_of_wandering_sensor(state)) return refusal;
+    return smaller_than_what_is_left(state);
   }
 
   bool is_worse_than_nominal(const Acceptance& state) {
@@ -119,6 +121,27 @@ class Judge {
     const auto sensor = wandering_sensor(trials_, found);
     if (!sensor || sensor->gain <= criteria::least_gain_of_offset) return {};
     return Refusal{size_t(load - found.members.begin()), described(trials_, *sensor), true};
+  }
+  /// Where the errors pass for noise, the forces along the smooth motion may still leave more than that
+  /// noise: a mode far above it, or an input between its rows, answers as a little mass or damping does. An
+  /// effect that is smaller than this may be no more than a part of it. In right answers what is left was at
+  /// most half of the smallest effect.
+  std::optional<Refusal> smaller_than_what_is_left(const Acceptance& state) const {
+    const Conclusion& c = state.conclusion;
+    const auto is_beside_balance = [](const Member& m) {
+      return is_own_load(m) || m.candidate->flies || m.candidate->acts == Acts::sensor;
+    };
+    if (!c.is_white() || trials_.has_map() || !balances_forces(trials_, inverse_) ||
+        std::ranges::any_of(c.estimate.members, is_beside_balance))
+      return {};
+    const double left = state.staircase.steps.back().force_rmse, noise = residual_floor(trials_, c.estimate);
+    const double beside_noise = std::sqrt(std::max(0.0, left * left - noise * noise));
+    const auto [least, most] = std::ranges::minmax_element(c.weights, {}, &Weight::force_rms);
+    if (c.weights.empty() || least->force_rms >= beside_noise || most->force_rms <= beside_noise) return {};
+    return Refusal{size_t(least - c.weights.begin()),
+                   fmt::format("the forces leave {} beside the noise, and it makes less: it may only make up "
+                               "for a part of that",
+                               shown(beside_noise, trials_.list.front().model->force_unit()))};
   }
   bool may_be_of_counts(const Acceptance& state, size_t member) const {
     const Weight& weight = state.conclusion.weights[member];

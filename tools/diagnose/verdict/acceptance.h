@@ -40,7 +40,8 @@ void need_what_simulates_better(std::vector<DiagnosisStep>& steps);
 /// it than without it (unless a load moves by itself: where it is at the beginning of a window is not known),
 /// as simulation and held-out force are both worse with one, as counts of the sensor are not white and the
 /// diagram simulates no better with one, as the interval of one contains zero while the diagram simulates
-/// no worse without it, or as a load of its own explains less than a sensor whose offset wanders.
+/// no worse without it, as a load of its own explains less than a sensor whose offset wanders, or as one is
+/// smaller than what the forces leave beside noise.
 /// `without(conclusion, member)` is the conclusion from the others.
 Acceptance accept(Conclusion conclusion, Trials& trials, const std::vector<InverseDynamics>& inverse,
                   const Improver& improver, const LoadOptions& load, size_t catalogue,
