@@ -20,6 +20,7 @@ namespace loopwright {
 struct FlawedMachine {
   double mass = 0.5, damping = 2;  ///< as the diagram has them
   double coulomb = 0, cogging = 0, pitch = 0.012, added_damping = 0, added_mass = 0;  ///< hidden
+  double coulomb_from = -1e300;                  ///< position up to which there is no dry friction
   double smooth_friction = 0, smooth_speed = 1;  ///< hidden: a tanh of the speed
   double presliding = 0;            ///< of the dry friction, which then builds up over this distance
   double eddy = 0, eddy_speed = 1;  ///< hidden: a drag that falls beyond this speed
@@ -32,11 +33,12 @@ struct FlawedMachine {
   double oscillation_hz = 0;  ///< instead of strokes: a sine of this frequency and of the stroke's amplitude
   double force_noise = 0.01, sensor_noise = 5e-8, resolution = 2e-7;  ///< standard deviations, and a count
   double wander = 0, wander_s = 2;  ///< of the position sensor's offset: first-order noise, and its time
-  double velocity_noise = 0;        ///< of a velocity sensor, which then replaces the position
-  double origin = 0;                ///< position at the start
-  double jitter = 0;         ///< greatest error of a sampling instant, in sample times; the stamps tell it
-  double stamp_jitter = 0;   ///< greatest error of a stamp alone, in sample times
-  double stamp_quantum = 0;  ///< s; stamps are rounded to it
+  double encoder_error = 0, encoder_pitch = 0.012;  ///< hidden: a sine of the position that is read
+  double velocity_noise = 0;  ///< of a velocity sensor, which then replaces the position
+  double origin = 0;          ///< position at the start
+  double jitter = 0;          ///< greatest error of a sampling instant, in sample times; the stamps tell it
+  double stamp_jitter = 0;    ///< greatest error of a stamp alone, in sample times
+  double stamp_quantum = 0;   ///< s; stamps are rounded to it
   size_t loses_every = 0, repeats_every = 0;  ///< one row in this number
   size_t stale_every = 0;   ///< one reading in this number is that of the row before, for the controller too
   size_t holding_rows = 0;  ///< behind each, in which the command is held and nothing is read
@@ -154,7 +156,8 @@ class FlawedAxis {
       bent_ += std::abs(h * v) / machine_.presliding * (std::copysign(machine_.coulomb, v) - bent_);
       return;
     }
-    const double fast = v + h / mass * free, most = machine_.coulomb * h / mass;
+    const double fast = v + h / mass * free,
+                 most = x < machine_.coulomb_from ? 0 : machine_.coulomb * h / mass;
     const double next = std::copysign(std::max(std::abs(fast) - most, 0.0), fast);
     x += h * (v + next) / 2, v = next;
   }
@@ -177,6 +180,7 @@ class FlawedAxis {
       const double behind = machine_.measured_late * T;
       double place = machine_.origin + (x - behind * v) + machine_.sensor_noise * normal();
       if (machine_.wander > 0) place += next_offset();
+      place += machine_.encoder_error * std::sin(2 * std::numbers::pi * place / machine_.encoder_pitch);
       if (machine_.resolution > 0) place = std::round(place / machine_.resolution) * machine_.resolution;
       if (machine_.stale_every > 0 && k % machine_.stale_every == 5) place = last_place_;
       last_place_ = place;

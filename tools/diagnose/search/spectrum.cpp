@@ -123,6 +123,7 @@ std::vector<double> peaks(const std::vector<double>& explained, const SpatialGri
                           double high, size_t count) {
   std::vector<double> pitches;
   std::vector<double> left = explained;
+  left[0] = 0;  // of no pitch
   const size_t apart = grid.samples / grid.bins + 1;
   for (size_t i = 0; i < count; ++i) {
     size_t best = 0;
