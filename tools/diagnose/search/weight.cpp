@@ -112,11 +112,6 @@ std::vector<double> change_of_input(const std::vector<Member>& members, size_t i
   return change;
 }
 
-/// The force by which an error of one standard deviation is counted.
-double force_of_an_error(const Noise& noise) {
-  return is_soon_forgotten(noise) ? std::hypot(noise.white, noise.slow()) : noise.white;
-}
-
 /// Root mean square of the force that a member consumes over the fitted rows.
 double force_rms(const Trials& trials, const Estimate& estimate, size_t index) {
   const Member& member = estimate.members[index];
@@ -167,6 +162,10 @@ Weight weigh(Trials& trials, Estimate& estimate, size_t member) {
 }
 
 }  // namespace
+
+double force_of_an_error(const Noise& noise) {
+  return is_soon_forgotten(noise) ? std::hypot(noise.white, noise.slow()) : noise.white;
+}
 
 double judged_numbers(const Trials& trials) {
   const double sample_time = trials.list.front().model->record().sample_time;

@@ -20,6 +20,9 @@ std::vector<Weight> weigh_all(Trials& trials, Estimate& estimate);
 /// Fills Weight::counts, as weigh_all() does where the errors are not white.
 void weigh_counts(const Trials& trials, const Estimate& estimate, std::vector<Weight>& weights);
 
+/// The force by which an error of one standard deviation is counted.
+double force_of_an_error(const Noise& noise);
+
 /// Number of fitted rows × ports; rows at a higher rate than once in criteria::judged_row_s count as parts.
 double judged_numbers(const Trials& trials);
 
