@@ -76,6 +76,11 @@ class Diagnosis(unittest.TestCase):
         late = next(e for e in score.found(result) if e["effect"] in ("input_delay", "actuator_lag"))
         self.assertEqual({late["effect"], *score.alternatives(late)}, {"input_delay", "actuator_lag"})
 
+    def test_fits_along_the_motion_of_the_answer(self):
+        result = diagnosed(906104)  # along that of a wrong set, a drag is 1 % and a friction 3 % too small
+        self.assertTrue(score.exact(result), score.found_names(result))
+        self.assertEqual(result["answer"]["verdict"], "explained")
+
     def test_declares_laws_of_the_velocity_whose_sum_is_alike(self):
         result = diagnosed(903891)  # a drag of eddy currents is smooth friction, more square drag and less damping
         self.assertTrue(score.exact_or_declared(result), score.found_names(result))

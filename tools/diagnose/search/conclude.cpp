@@ -136,9 +136,11 @@ size_t weakest_of(const std::vector<double>& sizes, const std::vector<Weight>& w
 /// weakest first. The search judged them with noise that it knew only partly; a barely material member, and
 /// what a controller that answers to noise may feign, must explain more than noise that is fitted without it.
 void keep_material(Trials& trials, Conclusion& result, size_t catalogue) {
+  constexpr int iterations = 4;
   Estimate& estimate = result.estimate;
   for (;;) {
     maximise(trials, estimate);
+    if (!estimate.members.empty()) estimate = with_own_motion(trials, std::move(estimate), iterations);
     result.weights = weigh_all(trials, estimate);
     if (estimate.members.empty()) return;
     std::vector<double> sizes = sizes_of_members(trials, result);
@@ -152,8 +154,8 @@ void keep_material(Trials& trials, Conclusion& result, size_t catalogue) {
       if (weakest == estimate.members.size()) return;
     }
     const double least = sizes[weakest];
-    Estimate without =
-        fit_members(trials, without_one(estimate.members, weakest), estimate.noise, estimate.motion, 4);
+    Estimate without = fit_members(trials, without_one(estimate.members, weakest), estimate.noise,
+                                   estimate.motion, iterations);
     if (least >= 1) {
       maximise(trials, without);
       const double doubt =

@@ -147,19 +147,10 @@ void take_own_motion(Trials& trials, Estimate& estimate, double far) {
 }
 
 /// A load on a spring is moved along the motion that an estimate without it predicted. What was wrong there
-/// at the start of the record swings on in the load, and bends its frequency and its damping; with these the
-/// load's own motion explains less, until it is fitted along that.
-Estimate with_motion_of_its_loads(Trials& trials, Estimate estimate, int iterations) {
-  constexpr int most_rounds = 3;
-  const auto is_on_a_spring = [](const Fitted& f) { return f.axis.load_states > 0 && !f.flying; };
-  for (int round = 0; round < most_rounds && estimate.is_valid; ++round) {
-    if (!std::ranges::any_of(*estimate.fitted, is_on_a_spring)) break;
-    Estimate own = on_own_motion(trials, estimate);
-    own = fit_members(trials, own.members, estimate.noise, own.motion, iterations);
-    if (!own.is_valid || !(own.profile < estimate.profile - criteria::least_gain_of_own_motion)) break;
-    estimate = std::move(own);
-  }
-  return estimate;
+/// at the start of the record swings on in the load, and bends its frequency and its damping.
+bool has_load_on_a_spring(const Estimate& estimate) {
+  return std::ranges::any_of(*estimate.fitted,
+                             [](const Fitted& f) { return f.axis.load_states > 0 && !f.flying; });
 }
 
 }  // namespace
@@ -169,6 +160,17 @@ Estimate on_own_motion(Trials& trials, Estimate estimate) {
   for (const Fitted& fitted : *estimate.fitted)
     motion.paths.emplace_back(estimate.fitted, &fitted.prediction.path);
   return evaluated(trials, std::move(estimate.members), estimate.noise, motion);
+}
+
+Estimate with_own_motion(Trials& trials, Estimate estimate, int iterations) {
+  constexpr int most_rounds = 3;
+  for (int round = 0; round < most_rounds && estimate.is_valid; ++round) {
+    Estimate own = on_own_motion(trials, estimate);
+    own = fit_members(trials, std::move(own.members), estimate.noise, own.motion, iterations);
+    if (!own.is_valid || !(own.profile < estimate.profile - criteria::least_gain_of_own_motion)) break;
+    estimate = std::move(own);
+  }
+  return estimate;
 }
 
 Estimate fit_members(Trials& trials, std::vector<Member> members, const Noise& noise, const Motion& motion,
@@ -204,7 +206,8 @@ Estimate with_own_noise(Trials& trials, Estimate estimate, int iterations, doubl
     estimate = evaluated(trials, std::move(estimate.members), noise, estimate.motion);
     if (estimate.profile > std::max(before, worst)) break;  // what is left is no noise: see fit_noise_alone()
     estimate = fit_members(trials, std::move(estimate.members), noise, estimate.motion, iterations, worst);
-    estimate = with_motion_of_its_loads(trials, std::move(estimate), iterations);
+    if (estimate.is_valid && has_load_on_a_spring(estimate))
+      estimate = with_own_motion(trials, std::move(estimate), iterations);
     const double gained = std::max(before - estimate.profile, 0.0);
     if (estimate.profile - gained > worst) break;
   }

@@ -41,6 +41,10 @@ Estimate snap_to_turn(Trials& trials, Estimate estimate);
 
 /// The same on the motion that it estimated itself.
 Estimate on_own_motion(Trials& trials, Estimate estimate);
+/// The same members fitted along it, again and again, as long as they explain more so. The motion that a
+/// wrong set predicted bends the parameters of the right one, which then explain less along their own motion
+/// until they are fitted there.
+Estimate with_own_motion(Trials& trials, Estimate estimate, int iterations);
 
 /// Noise for the search: small, so that a missing effect is not taken for noise.
 Noise search_noise(const Trials& trials);
