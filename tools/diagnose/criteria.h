@@ -9,7 +9,7 @@ namespace loopwright::diagnosis::criteria {
 
 // Rows that count.
 
-/// [s] After the start of a record, or the correction below if it takes longer: the first velocity is guessed.
+/// [s] After the start of a record, or the correction below if that is longer: the first velocity is guessed.
 constexpr double settling_s = 0.1;
 /// [time constants of the predictor's motion] After a reversal, or an impact. Dry friction changes its sign
 /// within a sample or two of it; after five time constants a hundredth of that error is left.
@@ -93,8 +93,7 @@ constexpr double quick_noise = 3;
 constexpr double next_to_no_slow_noise = 0.01;
 /// [-2 ln L] What a slow force that counts as white may lose: two parameters that chance fits.
 constexpr double most_lost_as_white = 25;
-/// [factor] The likelihood looks for each noise within this of its start.
-constexpr double noise_reach = 30;
+constexpr double noise_reach = 30;  ///< [factor] The likelihood looks for each noise within it of its start.
 /// [rows] In a pitch at the top speed: what repeats sooner leaps over the rows, and is noise. Slower parts of
 /// the motion show it better.
 constexpr double rows_of_shortest_pitch = 1.5;
@@ -102,8 +101,7 @@ constexpr double rows_of_shortest_pitch = 1.5;
 constexpr double rows_of_fine_pitch = 4;
 /// [cosine] Input and force push the states in the same direction: noise of one is noise of the other.
 constexpr double same_push = 0.99;
-/// [greatest position] Numbers of a record have some nine digits.
-constexpr double least_sensor_noise = 1e-9;
+constexpr double least_sensor_noise = 1e-9;  ///< [greatest position] Numbers of a record have nine digits.
 /// [gain of a late input] Of which an input that is early by as much, or smoothed beside a small one, has
 /// more if it has noise that any mean reduces. One that is truly late loses by either.
 constexpr double least_gain_of_early_input = 0.5;
@@ -207,6 +205,9 @@ constexpr double least_gain = 10, least_gain_per_row = 0.002;
 constexpr double least_gain_without_name = 20, least_gain_without_name_per_row = 0.1;
 /// [criterion] The same where several names depend on the velocity alone, as a wrong law of friction shows.
 constexpr double least_gain_over_stacked_names_per_row = 0.02;
+/// [-2 ln L] What a function without a name must gain with each level to be fitted with noise of its own, as
+/// Akaike's criterion asks; [noise of the force] which it must leave less of: half of the square.
+constexpr double least_gain_of_level = 2, most_noise_left = 0.7;
 /// [criterion] A set is clearly better; two sets that state the same law of motion differ by the noise alone.
 constexpr double clearly_better = 3, same_law = 20;
 /// [criterion] Laws of one variable that are promised to lose more than this together are not tried.
@@ -218,8 +219,7 @@ constexpr double least_gain_of_larger_set = 4;
 constexpr double reach_of_same_law = 4;
 /// [reach of an alternative] A promising set may lose so much on its own motion.
 constexpr double most_promised_loss = 20;
-/// [mean square] The search starts again from functions without a name.
-constexpr double much_left = 8;
+constexpr double much_left = 8;  ///< [mean square] The search starts again from functions without a name.
 /// [mean square] Below it the shapes that were found are the right ones.
 constexpr double well_explained = 1.2;
 /// [force of dry friction] A free constant of another member contains it up to this share: what it does as it

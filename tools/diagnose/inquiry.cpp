@@ -4,6 +4,7 @@
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/doubt.h"
 #include "tools/diagnose/search/friction_at_reversals.h"
+#include "tools/diagnose/search/hidden_in_noise.h"
 #include "tools/diagnose/search/names.h"
 #include "tools/diagnose/search/replacement.h"
 #include "tools/diagnose/search/rivals.h"
@@ -30,6 +31,10 @@ Conclusion Inquiry::with_names() {
   Conclusion conclusion = concluded(found.trail, e);
   if (conclusion.is_white() && holds_out_something_else(conclusion.estimate))
     return with_all_rows(conclusion.trail, conclusion.estimate);
+  if (conclusion.is_white())
+    if (auto more = hidden_in_noise(trials_, conclusion.estimate, unknown_, catalogue_.candidates.size(),
+                                    conclusion.trail))
+      return concluded(std::move(conclusion.trail), *more);
   return gone_on(std::move(conclusion), e.members);
 }
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
-#include "tests/tools/diagnose/diagnosed.h"
+#include "tests/tools/diagnose/diagnosed_plant.h"
 #include "tests/tools/diagnose/plain_axis.h"
 
 namespace loopwright::late_log_test {
