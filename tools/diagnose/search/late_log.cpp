@@ -67,7 +67,9 @@ std::optional<size_t> rows_logged_late(Trials& trials, const Estimate& found,
     if (!(gain > most)) continue;
     const double share = trial.members.front().linear.front();
     trail.push_back(fmt::format("the input of {} rows later: share {:.2f}, gain {:.1f}", i + 1, share, gain));
-    if (std::abs(share - 1) < criteria::most_beside_a_row) late = i + 1, most = gain;
+    const bool is_whole = std::abs(share - 1) < criteria::most_beside_a_row;
+    // A part of that of two rows later that explains more than all of that of one is a lead of the motor.
+    late = is_whole ? std::optional(i + 1) : std::nullopt, most = gain;
   }
   return late;
 }
