@@ -47,10 +47,17 @@ double against_free(const Trials& trials, const std::vector<Fitted>& fitted, dou
 struct Glances {
   size_t least_rest = 0, apart = 0, length = 0;  ///< [rows] before the first; of an increase; of a glance
 };
+
+/// Whether most of a glance goes in one direction: counts hide some of a slow slide, and noise turns some.
+bool is_slide(size_t forward, size_t backward, size_t length) {
+  return 2 * std::max(forward, backward) >= length &&
+         std::max(forward, backward) >= 3 * std::min(forward, backward);
+}
+
 /// Mean square of the increase of the motion of the axis at rest in `lag` samples over that in the previous
 /// `lag` samples: a creep at constant speed does not contribute. Median of means over short intervals,
 /// because a held axis slips now and then; but an axis that moves on in one direction slides, and that a
-/// slide is free says nothing.
+/// slide is free says nothing. Nor does the first interval of a rest, in which it comes to that.
 struct Swerve {
   double square = 0;
   size_t glances = 0;
@@ -64,7 +71,7 @@ Swerve swerve_at_rest(const Trials& trials, size_t lag, const Glances& at) {
     size_t forward = 0, backward = 0;
     for (size_t k = 0, resting = 0; position && k < trial.held_out_from; ++k) {
       resting = trial.at_rest[k] ? resting + 1 : 0;
-      if (resting <= at.least_rest + 2 * at.apart) {
+      if (resting <= at.least_rest + 2 * at.apart + at.length) {
         sum = 0, forward = backward = 0;
         continue;
       }
@@ -72,7 +79,7 @@ Swerve swerve_at_rest(const Trials& trials, size_t lag, const Glances& at) {
       sum += std::pow(*x - 2 * *(x - lag) + *(x - 2 * lag), 2) / double(at.length);
       forward += size_t(*x > *(x - at.apart)), backward += size_t(*x < *(x - at.apart));
       if ((resting - at.least_rest - 2 * at.apart) % at.length != 0) continue;
-      if (std::max(forward, backward) < at.length) glances.push_back(sum);
+      if (!is_slide(forward, backward, at.length)) glances.push_back(sum);
       sum = 0, forward = backward = 0;
     }
   }
