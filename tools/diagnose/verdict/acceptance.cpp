@@ -134,8 +134,10 @@ class Judge {
     if (!c.is_white() || trials_.has_map() || !balances_forces(trials_, inverse_) ||
         std::ranges::any_of(c.estimate.members, is_beside_balance))
       return {};
+    constexpr double clearly_more = 1.05;  // than noise, whose size is known no better
     const double left = state.staircase.steps.back().force_rmse, noise = residual_floor(trials_, c.estimate);
-    const double beside_noise = std::sqrt(std::max(0.0, left * left - noise * noise));
+    if (left < clearly_more * noise) return {};
+    const double beside_noise = std::sqrt(left * left - noise * noise);
     const auto [least, most] = std::ranges::minmax_element(c.weights, {}, &Weight::force_rms);
     if (c.weights.empty() || least->force_rms >= beside_noise || most->force_rms <= beside_noise) return {};
     return Refusal{size_t(least - c.weights.begin()),
