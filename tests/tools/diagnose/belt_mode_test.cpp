@@ -1,5 +1,5 @@
-/// A lift on a belt whose mode the diagram does not have: what it leaves is neither noise nor an effect of
-/// its own. The record is made by an integration of its own.
+// A lift on a belt whose mode the diagram does not have: what it leaves is neither noise nor an effect of
+// its own. The record is made by an integration of its own.
 #include <gmock/gmock.h>
 #include <cmath>
 #include <random>
