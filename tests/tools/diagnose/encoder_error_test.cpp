@@ -1,18 +1,12 @@
 // An error of the encoder that repeats a few times along the stroke, as that of a scale that is mounted
 // askew.
 #include <gmock/gmock.h>
-#include "tests/tools/diagnose/diagnosed.h"
-#include "tests/tools/diagnose/flawed_axis.h"
+#include "tests/tools/diagnose/diagnosed_axis.h"
 
 namespace loopwright::encoder_error_test {
 namespace {
 
 using testing::ElementsAre;
-
-Diagnosis diagnosed(const FlawedMachine& machine) {
-  const FlawedAxis axis(machine);
-  return diagnose(axis.diagram(), {axis.experiment()});
-}
 
 /// It had been told as cogging that changes with speed.
 TEST(EncoderError, OfAThirdOfTheStrokeIsNamedWithFewRowsBetweenTurns) {

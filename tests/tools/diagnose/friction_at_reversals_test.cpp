@@ -1,7 +1,6 @@
 // Laws of dry friction that differ where the motion turns, and nearly nowhere else.
 #include <gmock/gmock.h>
-#include "tests/tools/diagnose/diagnosed.h"
-#include "tests/tools/diagnose/flawed_axis.h"
+#include "tests/tools/diagnose/diagnosed_axis.h"
 
 namespace loopwright::friction_at_reversals_test {
 namespace {
@@ -13,11 +12,6 @@ FlawedMachine fast_machine() {
   FlawedMachine machine;
   machine.top_speed = 1.2, machine.duration = 6, machine.coulomb = 0.6;
   return machine;
-}
-
-Diagnosis diagnosed(const FlawedMachine& machine) {
-  const FlawedAxis axis(machine);
-  return diagnose(axis.diagram(), {axis.experiment()});
 }
 
 TEST(FrictionAtReversals, HysteresisOfAShortDistanceIsNamedWithIt) {

@@ -1,7 +1,6 @@
 // What the fitted noise of the force would swallow: a law that the catalogue lacks, behind coarse counts.
 #include <gmock/gmock.h>
-#include "tests/tools/diagnose/diagnosed.h"
-#include "tests/tools/diagnose/flawed_axis.h"
+#include "tests/tools/diagnose/diagnosed_axis.h"
 
 namespace loopwright::hidden_in_noise_test {
 namespace {
@@ -12,11 +11,6 @@ FlawedMachine behind_coarse_counts() {
   machine.sample_time = 5e-4, machine.resolution = 3e-4, machine.controller_hz = 2;
   machine.force_noise = 0.003;
   return machine;
-}
-
-Diagnosis diagnosed(const FlawedMachine& machine) {
-  const FlawedAxis axis(machine);
-  return diagnose(axis.diagram(), {axis.experiment()});
 }
 
 TEST(HiddenInNoise, IsFrictionInAPartOfTheTravel) {

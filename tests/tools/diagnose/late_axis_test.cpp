@@ -2,16 +2,10 @@
 // answer resembles a delay in the errors, and hides a true one in a simulation by what the controller
 // commanded.
 #include <gmock/gmock.h>
-#include "tests/tools/diagnose/diagnosed.h"
-#include "tests/tools/diagnose/flawed_axis.h"
+#include "tests/tools/diagnose/diagnosed_axis.h"
 
 namespace loopwright::late_axis_test {
 namespace {
-
-Diagnosis diagnosed(const FlawedMachine& machine) {
-  const FlawedAxis axis(machine);
-  return diagnose(axis.diagram(), {axis.experiment()});
-}
 
 FlawedMachine with_counts_of(double metres) {
   FlawedMachine machine;

@@ -1,16 +1,10 @@
 // A lag of a part of a sample: too small to matter, but said. The answer of a controller to noise,
 // which resembles one, is not.
 #include <gmock/gmock.h>
-#include "tests/tools/diagnose/diagnosed.h"
-#include "tests/tools/diagnose/flawed_axis.h"
+#include "tests/tools/diagnose/diagnosed_axis.h"
 
 namespace loopwright::small_delay_test {
 namespace {
-
-Diagnosis diagnosed(const FlawedMachine& machine) {
-  const FlawedAxis axis(machine);
-  return diagnose(axis.diagram(), {axis.experiment()});
-}
 
 std::vector<std::string> small_effects(const Diagnosis& d) {
   std::vector<std::string> list;

@@ -1,8 +1,7 @@
 // A velocity sensor alone, on a machine whose diagram has forces that depend on the position: nobody measures
 // where it is, but it is where the velocity has brought it since the start.
 #include <gmock/gmock.h>
-#include "tests/tools/diagnose/diagnosed.h"
-#include "tests/tools/diagnose/flawed_axis.h"
+#include "tests/tools/diagnose/diagnosed_axis.h"
 
 namespace loopwright::velocity_sensor_test {
 namespace {
@@ -15,11 +14,6 @@ FlawedMachine machine_with_known_cogging() {
   machine.velocity_noise = 5e-5;
   machine.cogging = 0.8, machine.pitch = 0.012, machine.cogging_is_known = true, machine.origin = 0.0043;
   return machine;
-}
-
-Diagnosis diagnosed(const FlawedMachine& machine) {
-  const FlawedAxis axis(machine);
-  return diagnose(axis.diagram(), {axis.experiment()});
 }
 
 TEST(VelocitySensor, WithKnownCoggingNothingIsMissing) {
